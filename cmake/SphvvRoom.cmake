@@ -1,0 +1,78 @@
+# A room is one library, sphvv::NAME, with its tests beside it.
+
+# Headers are named "sphvv/ROOM/…" in the tree and after installation alike.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/include)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/include/sphvv SYMBOLIC)
+
+add_library(sphvv_options INTERFACE)
+target_compile_features(sphvv_options INTERFACE cxx_std_20)
+target_compile_options(sphvv_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Wno-psabi
+  # GCC 12 takes the undefined register of its own AVX-512 intrinsics for a fault (GCC bug 105593).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  $<$<BOOL:${SPHVV_WARNINGS_AS_ERRORS}>:-Werror>
+  $<$<AND:$<BOOL:${SPHVV_NATIVE}>,$<CONFIG:Release>>:-march=native>
+  # Sums over neighbours carry their own `omp simd reduction`; no other reassociation is allowed, so that the
+  # same binary gives the same bits. Neither errno nor trapping is used.
+  -fno-math-errno -fno-trapping-math)
+target_link_libraries(sphvv_options INTERFACE OpenMP::OpenMP_CXX)
+if(SPHVV_SANITIZE)
+  target_compile_options(sphvv_options INTERFACE -fsanitize=${SPHVV_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(sphvv_options INTERFACE -fsanitize=${SPHVV_SANITIZE})
+endif()
+
+# sphvv_room(NAME SOURCES … LINK …): the library sphvv::NAME.
+function(sphvv_room name)
+  cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
+  add_library(sphvv_${name} STATIC ${arg_SOURCES})
+  add_library(sphvv::${name} ALIAS sphvv_${name})
+  set_target_properties(sphvv_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(sphvv_${name} PUBLIC cxx_std_20)
+  target_include_directories(sphvv_${name} SYSTEM PUBLIC ${HDF5_C_INCLUDE_DIRS})
+  target_include_directories(sphvv_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(sphvv_${name} PUBLIC ${arg_LINK} PRIVATE $<BUILD_INTERFACE:sphvv_options>)
+endfunction()
+
+# sphvv_test(ROOM NAME LABEL): the GoogleTest program ROOM/tests/NAME.cpp, one CTest test with that label.
+function(sphvv_test room name label)
+  add_executable(${room}_${name} ${CMAKE_CURRENT_SOURCE_DIR}/tests/${name}.cpp)
+  target_link_libraries(${room}_${name} PRIVATE sphvv::${room} sphvv_options GTest::gtest_main ${ARGN})
+  add_test(NAME ${room}.${name} COMMAND ${room}_${name})
+  set_tests_properties(${room}.${name} PROPERTIES LABELS ${label})
+endfunction()
+
+# sphvv_registry(ROOM FOLDER TYPE): the one-file rule. Every FOLDER/STEM.cpp must define
+# `const TYPE& sphvv::ROOM::FOLDER::STEM()`; a file that does not is a link error, so none can vanish silently.
+# Generates `std::span<const TYPE* const> sphvv::ROOM::FOLDER::all()`, in the order of the file names.
+function(sphvv_registry room folder type out_sources)
+  file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
+  list(SORT files)
+  set(declarations "")
+  set(entries "")
+  foreach(file IN LISTS files)
+    get_filename_component(stem ${file} NAME_WE)
+    string(APPEND declarations "const ${type}& ${stem}();\n")
+    string(APPEND entries "        &${stem}(),\n")
+  endforeach()
+  string(TOUPPER ${folder} FOLDER)
+  set(generated ${PROJECT_BINARY_DIR}/generated/sphvv_${room}_${folder}.cpp)
+  file(CONFIGURE OUTPUT ${generated} @ONLY CONTENT [=[
+// Generated from the files of @room@/@folder@ by cmake/SphvvRoom.cmake.
+#include "sphvv/@room@/@folder@.hpp"
+
+#include <array>
+
+namespace sphvv::@room@::@folder@ {
+@declarations@
+std::span<const @type@* const> all() {
+    static const std::array entries{
+@entries@    };
+    return entries;
+}
+} // namespace sphvv::@room@::@folder@
+]=])
+  set(${out_sources} ${files} ${generated} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,277 @@
+#include "sphvv/solver/linear/pressure_poisson.hpp"
+
+#include "sphvv/solver/lanes.hpp"
+#include "sphvv/solver/simulation.hpp"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+
+#include <cmath>
+
+namespace sphvv::solver {
+template <int Dim>
+class PairMatrix;
+} // namespace sphvv::solver
+
+namespace Eigen::internal {
+// Lets Eigen's iterative solvers take the matrix-free operator (Eigen documentation, "Matrix-free solvers").
+template <int Dim>
+struct traits<sphvv::solver::PairMatrix<Dim>> : traits<SparseMatrix<double>> {};
+} // namespace Eigen::internal
+
+namespace sphvv::solver {
+
+/// The operator A of PressurePoisson in the form that Eigen's solvers take.
+template <int Dim>
+class PairMatrix : public Eigen::EigenBase<PairMatrix<Dim>> {
+public:
+    using Scalar = double;
+    using RealScalar = double;
+    using StorageIndex = int;
+    enum { ColsAtCompileTime = Eigen::Dynamic, MaxColsAtCompileTime = Eigen::Dynamic, IsRowMajor = false };
+
+    explicit PairMatrix(const PressurePoisson<Dim>& discrete) : problem(discrete) {}
+    Eigen::Index rows() const { return problem.size(); }
+    Eigen::Index cols() const { return problem.size(); }
+    template <class Rhs>
+    Eigen::Product<PairMatrix, Rhs, Eigen::AliasFreeProduct>
+    operator*(const Eigen::MatrixBase<Rhs>& x) const {
+        return {*this, x.derived()};
+    }
+
+    const PressurePoisson<Dim>& problem;
+};
+
+} // namespace sphvv::solver
+
+namespace Eigen::internal {
+template <int Dim, class Rhs>
+struct generic_product_impl<sphvv::solver::PairMatrix<Dim>, Rhs, SparseShape, DenseShape, GemvProduct>
+    : generic_product_impl_base<
+          sphvv::solver::PairMatrix<Dim>, Rhs,
+          generic_product_impl<sphvv::solver::PairMatrix<Dim>, Rhs, SparseShape, DenseShape>> {
+    template <class Destination>
+    static void scaleAndAddTo(Destination& y, const sphvv::solver::PairMatrix<Dim>& A, const Rhs& x,
+                              double alpha) {
+        const VectorXd source = x;
+        VectorXd product(source.size());
+        A.problem.multiply(source.data(), product.data());
+        y += alpha * product;
+    }
+};
+} // namespace Eigen::internal
+
+namespace sphvv::solver {
+
+/// Galerkin restriction of the matrix to vectors that are constant on each cell of the neighbour grid. Cells
+/// are as wide as the support, so a cell couples to its neighbours only and the coarse matrix stays sparse.
+template <int Dim>
+struct PressurePoisson<Dim>::CoarseSpace {
+    Eigen::SparseMatrix<double> matrix;
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
+    Eigen::VectorXd restricted;
+    Eigen::VectorXd solution;
+    std::array<int, Dim> analysed_cells{};
+
+    void compute(const PressurePoisson& problem);
+    void add_correction(const PressurePoisson& problem, const double* residual, double* z);
+};
+
+template <int Dim>
+void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) {
+    const NeighbourList<Dim>& neighbours = *problem.neighbours_;
+    const CellGrid<Dim>& grid = neighbours.grid();
+    const int cells = grid.cell_count();
+    const auto order = grid.order();
+    std::vector<int> first(cells + 1, 0);
+    for (int i = 0; i < problem.size(); ++i) {
+        ++first[grid.cell_of(i) + 1];
+    }
+    for (int c = 0; c < cells; ++c) {
+        first[c + 1] += first[c];
+    }
+    std::vector<std::vector<std::pair<int, double>>> rows(cells);
+#pragma omp parallel
+    {
+        std::vector<double> sums(cells, 0.0);
+        std::vector<char> touched(cells, 0);
+        std::vector<int> touched_cells;
+#pragma omp for schedule(dynamic, 8)
+        for (int c = 0; c < cells; ++c) {
+            const auto touch = [&](int other) {
+                if (!touched[other]) {
+                    touched[other] = 1;
+                    touched_cells.push_back(other);
+                }
+            };
+            touch(c);
+            for (int m = first[c]; m < first[c + 1]; ++m) {
+                const int i = order[m];
+                const auto row = neighbours.row(i);
+                const double* w = problem.weights_.data() + neighbours.row_start(i);
+                sums[c] += problem.diagonal_[i];
+                for (int k = 0; k < row.count; ++k) {
+                    const int other = grid.cell_of(row.index[k]);
+                    touch(other);
+                    sums[other] -= w[k];
+                }
+            }
+            std::sort(touched_cells.begin(), touched_cells.end());
+            for (const int other : touched_cells) {
+                rows[c].emplace_back(other, sums[other]);
+                sums[other] = 0;
+                touched[other] = 0;
+            }
+            touched_cells.clear();
+        }
+    }
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int c = 0; c < cells; ++c) {
+        const bool empty = first[c] == first[c + 1];
+        for (const auto& [other, value] : rows[c]) {
+            // Constants are in the null space: the first cell's value is pinned to make the matrix definite,
+            // which shifts the correction by a constant only. An empty cell has no equation.
+            const bool pinned = c == 0 || other == 0;
+            if (c == other) {
+                entries.emplace_back(c, c, pinned || empty ? 1.0 : value);
+            } else if (!pinned) {
+                entries.emplace_back(c, other, value);
+            }
+        }
+    }
+    matrix.resize(cells, cells);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    factor.compute(matrix);
+    restricted.resize(cells);
+}
+
+template <int Dim>
+void PressurePoisson<Dim>::CoarseSpace::add_correction(const PressurePoisson& problem, const double* residual,
+                                                       double* z) {
+    const CellGrid<Dim>& grid = problem.neighbours_->grid();
+    restricted.setZero();
+    for (int i = 0; i < problem.size(); ++i) {
+        restricted[grid.cell_of(i)] += residual[i];
+    }
+    restricted[0] = 0;
+    solution = factor.solve(restricted);
+    for (int i = 0; i < problem.size(); ++i) {
+        z[i] += solution[grid.cell_of(i)];
+    }
+}
+
+/// z = D^-1 r, plus the coarse correction where there is a coarse space.
+template <class Problem>
+class CellPreconditioner {
+public:
+    using StorageIndex = int;
+    CellPreconditioner() = default;
+
+    template <class Matrix>
+    CellPreconditioner& analyzePattern(const Matrix&) {
+        return *this;
+    }
+    template <class Matrix>
+    CellPreconditioner& factorize(const Matrix& A) {
+        problem_ = &A.problem;
+        return *this;
+    }
+    template <class Matrix>
+    CellPreconditioner& compute(const Matrix& A) {
+        return factorize(A);
+    }
+    template <class Rhs>
+    Eigen::VectorXd solve(const Rhs& residual) const {
+        const Eigen::VectorXd r = residual;
+        Eigen::VectorXd z = r.cwiseQuotient(problem_->diagonal_);
+        if (problem_->coarse_) {
+            problem_->coarse_->add_correction(*problem_, r.data(), z.data());
+        }
+        return z;
+    }
+    Eigen::ComputationInfo info() const { return Eigen::Success; }
+
+private:
+    const Problem* problem_ = nullptr;
+};
+
+template <int Dim>
+PressurePoisson<Dim>::PressurePoisson(Options options) : options_(options) {
+    if (options_.preconditioner == Preconditioner::two_level) {
+        coarse_ = std::make_unique<CoarseSpace>();
+    }
+}
+template <int Dim>
+PressurePoisson<Dim>::~PressurePoisson() = default;
+template <int Dim>
+PressurePoisson<Dim>::PressurePoisson(PressurePoisson&&) noexcept = default;
+template <int Dim>
+PressurePoisson<Dim>& PressurePoisson<Dim>::operator=(PressurePoisson&&) noexcept = default;
+
+template <int Dim>
+void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours) {
+    neighbours_ = &neighbours;
+    weights_.resize(neighbours.entries());
+    diagonal_.resize(neighbours.size());
+    source_.resize(neighbours.size());
+}
+
+template <int Dim>
+void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
+    for_each_row(*neighbours_, [&](int i, const auto& row) {
+        const double* w = weights_.data() + neighbours_->row_start(i);
+        Lanes total{};
+        for (int k = 0; k < row.padded; k += lane_count) {
+            total += load(w + k) * gather(x, row.index + k);
+        }
+        y[i] = diagonal_[i] * x[i] - sum(total);
+    });
+    if (!options_.symmetric) {
+        Eigen::Map<Eigen::VectorXd> product(y, size());
+        product.array() -= product.mean();
+    }
+}
+
+template <int Dim>
+LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
+    Eigen::Map<Eigen::VectorXd> p(pressure, size());
+    source_.array() -= source_.mean();
+    LinearSolve result{0, 0, true, 0};
+    if (source_.norm() == 0) {
+        p.setZero();
+        return result;
+    }
+    if (coarse_) {
+        coarse_->compute(*this);
+    }
+    const PairMatrix<Dim> matrix(*this);
+    const auto run = [&](auto&& solver, int products_per_iteration) {
+        solver.setTolerance(options_.tolerance);
+        solver.setMaxIterations(options_.maximum_iterations);
+        solver.compute(matrix);
+        p = solver.solveWithGuess(source_, p);
+        result.iterations = static_cast<int>(solver.iterations());
+        result.residual = solver.error();
+        result.converged = solver.info() == Eigen::Success;
+        result.matrix_entries =
+            (neighbours_->pairs() + size()) * (1 + std::int64_t{products_per_iteration} * result.iterations);
+    };
+    using Conditioner = CellPreconditioner<PressurePoisson>;
+    if (options_.symmetric) {
+        run(Eigen::ConjugateGradient<PairMatrix<Dim>, Eigen::Lower | Eigen::Upper, Conditioner>(), 1);
+    } else {
+        run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);
+    }
+    p.array() -= p.mean();
+    return result;
+}
+
+template <int Dim>
+std::size_t PressurePoisson<Dim>::bytes() const {
+    return weights_.capacity() * sizeof(double) + 2 * diagonal_.size() * sizeof(double);
+}
+
+template class PressurePoisson<2>;
+template class PressurePoisson<3>;
+
+} // namespace sphvv::solver

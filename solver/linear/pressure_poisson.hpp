@@ -1,0 +1,79 @@
+#pragma once
+
+#include "sphvv/solver/neighbours/neighbour_list.hpp"
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sphvv::solver {
+
+/// Outcome of one linear solve.
+struct LinearSolve {
+    int iterations;
+    double residual; ///< |b - A x| / |b|
+    bool converged;
+    std::int64_t matrix_entries; ///< entries multiplied
+};
+
+/// The discrete Poisson problem on the particles: sum_j w_ij (p_i - p_j) = b_i, with weights that a Laplacian
+/// operator writes into the layout of the neighbour list.
+///
+/// The matrix is never copied: products run over the list. Constants are in its null space (no wall, no free
+/// surface), so the mean of the right-hand side is projected out, and so is the mean of each product where
+/// the matrix is not symmetric and its range is another hyperplane; the solution is returned with zero mean.
+/// Conjugate gradients for symmetric weights, Bi-CGSTAB otherwise, both Eigen's, started from the given
+/// pressure.
+template <int Dim>
+class PressurePoisson {
+public:
+    enum class Preconditioner {
+        jacobi,
+        two_level ///< Jacobi plus an exact solve for one unknown per cell of the neighbour grid
+    };
+
+    struct Options {
+        double tolerance = 1e-5; ///< on |b - A x| / |b|
+        int maximum_iterations = 2000;
+        Preconditioner preconditioner = Preconditioner::two_level;
+        bool symmetric = true;
+    };
+
+    explicit PressurePoisson(Options options);
+    ~PressurePoisson();
+    PressurePoisson(PressurePoisson&&) noexcept;
+    PressurePoisson& operator=(PressurePoisson&&) noexcept;
+    PressurePoisson(const PressurePoisson&) = delete;
+    PressurePoisson& operator=(const PressurePoisson&) = delete;
+
+    /// Makes room for the pairs of a list; the operator then writes row i's weights to weights(i) and their
+    /// sum to diagonal(i).
+    void reset(const NeighbourList<Dim>& neighbours);
+    double* weights(int i) { return weights_.data() + neighbours_->row_start(i); }
+    double& diagonal(int i) { return diagonal_[i]; }
+    double& source(int i) { return source_[i]; }
+
+    /// Solves for `pressure`, which holds the first guess.
+    LinearSolve solve(double* pressure);
+
+    /// y = A x.
+    void multiply(const double* x, double* y) const;
+    int size() const { return static_cast<int>(diagonal_.size()); }
+    std::size_t bytes() const;
+
+private:
+    template <class T>
+    friend class CellPreconditioner;
+    struct CoarseSpace;
+
+    Options options_;
+    const NeighbourList<Dim>* neighbours_ = nullptr;
+    std::vector<double> weights_;
+    Eigen::VectorXd diagonal_;
+    Eigen::VectorXd source_;
+    std::unique_ptr<CoarseSpace> coarse_;
+};
+
+} // namespace sphvv::solver

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sphvv::solver {
+
+/// Whether a field carries the solution from one step to the next (it is sorted with the particles and
+/// written to snapshots) or is formed anew within each step.
+enum class Lifetime { state, scratch };
+
+/// One named quantity on all particles, stored component by component.
+struct Field {
+    std::string name;
+    Lifetime lifetime;
+    std::vector<std::string> asked_by;
+    std::vector<std::vector<double>> components;
+
+    double* operator[](int component) { return components[component].data(); }
+    const double* operator[](int component) const { return components[component].data(); }
+    std::size_t bytes_per_particle() const { return components.size() * sizeof(double); }
+};
+
+/// The particles of a scene as a structure of arrays. It starts with position and velocity only; every other
+/// field exists because a stage asked for it.
+template <int Dim>
+class Particles {
+public:
+    explicit Particles(std::size_t count);
+
+    std::size_t size() const { return id.size(); }
+
+    /// The field of that name, allocated (zero) when first asked for. A field that anyone wants as state is
+    /// state.
+    Field& field(std::string_view name, int components, Lifetime lifetime, std::string_view asked_by);
+    /// The field of that name, or nullptr.
+    const Field* find(std::string_view name) const;
+
+    const std::deque<Field>& fields() const { return fields_; }
+    std::deque<Field>& fields() { return fields_; }
+
+    /// Bytes of all fields and the identity, per particle.
+    std::size_t bytes_per_particle() const;
+
+    /// Reorders identity and state fields: particle k becomes what was particle order[k].
+    void permute(std::span<const int> order);
+
+    std::vector<int> id; ///< rank at the start of the run
+
+private:
+    std::deque<Field> fields_; // a deque, so that references that stages hold stay valid
+    std::vector<double> permuted_;
+
+public:
+    Field& position; ///< m
+    Field& velocity; ///< m/s
+};
+
+} // namespace sphvv::solver

@@ -1,0 +1,187 @@
+#include "sphvv/solver/simulation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+namespace sphvv::solver {
+namespace {
+
+template <int Dim>
+std::string place(const Simulation<Dim>& simulation, int i) {
+    std::string text = "particle " + std::to_string(simulation.particles.id[i]) + " at (";
+    for (int d = 0; d < Dim; ++d) {
+        char number[32];
+        std::snprintf(number, sizeof number, "%s%.4g", d == 0 ? "" : ", ",
+                      simulation.particles.position[d][i]);
+        text += number;
+    }
+    return text + ")";
+}
+
+template <int Dim>
+[[noreturn]] void diverge(const Simulation<Dim>& simulation, const std::string& what) {
+    char when[80];
+    std::snprintf(when, sizeof when, " at t = %.4g, step %lld", simulation.time,
+                  static_cast<long long>(simulation.step));
+    throw Diverged(what + when);
+}
+
+/// First particle for which the predicate holds, or -1.
+template <class Predicate>
+int first_particle(int count, Predicate&& predicate) {
+    for (int i = 0; i < count; ++i) {
+        if (predicate(i)) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+template <int Dim>
+void check_survival(const Simulation<Dim>& simulation) {
+    const Particles<Dim>& particles = simulation.particles;
+    const double energy = kinetic_energy(simulation);
+    if (!std::isfinite(energy)) {
+        const int i = first_particle(static_cast<int>(particles.size()), [&](int k) {
+            for (int d = 0; d < Dim; ++d) {
+                if (!std::isfinite(particles.velocity[d][k])) {
+                    return true;
+                }
+            }
+            return false;
+        });
+        diverge(simulation,
+                "velocity not finite: " + (i < 0 ? "its square overflows" : place(simulation, i)));
+    }
+    char text[160];
+    if (energy > simulation.survival.kinetic_energy) {
+        std::snprintf(text, sizeof text, "kinetic energy %.4g above its bound %.4g (%s)", energy,
+                      simulation.survival.kinetic_energy, simulation.survival.kinetic_energy_reason.c_str());
+        diverge(simulation, text);
+    }
+    const double spacing = simulation.neighbours.minimum_distance();
+    if (spacing < simulation.survival.minimum_spacing) {
+        std::snprintf(text, sizeof text, "minimum spacing %.3f dx below %.3f dx (%s), ",
+                      spacing / simulation.particle_spacing,
+                      simulation.survival.minimum_spacing / simulation.particle_spacing,
+                      simulation.survival.minimum_spacing_reason.c_str());
+        diverge(simulation, text + place(simulation, simulation.neighbours.closest_particle()));
+    }
+}
+
+} // namespace
+
+template <int Dim>
+void advance(Simulation<Dim>& simulation) {
+    using Clock = std::chrono::steady_clock;
+    ++simulation.step;
+    for (Stage<Dim>& stage : simulation.stages) {
+        const auto begin = Clock::now();
+        const std::int64_t pairs = simulation.work.pair_evaluations;
+        stage.run(simulation);
+        stage.pair_evaluations += simulation.work.pair_evaluations - pairs;
+        stage.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
+    }
+    simulation.time += simulation.time_step;
+    if (simulation.end_time - simulation.time < 1e-9 * simulation.time_step) {
+        simulation.time = simulation.end_time;
+    }
+    simulation.work.particle_steps += static_cast<std::int64_t>(simulation.particles.size());
+    check_survival(simulation);
+}
+
+template <int Dim>
+double even_step(const Simulation<Dim>& simulation, double limit) {
+    if (!(limit > 0)) {
+        diverge(simulation, "no positive time step is left (limit " + shortest(limit) + ")");
+    }
+    const double left = simulation.end_time - simulation.time;
+    return left / std::max(1.0, std::ceil(left / limit * (1 - 1e-12)));
+}
+
+template <int Dim>
+void wrap_positions(Simulation<Dim>& simulation) {
+    const Box<Dim>& box = simulation.box;
+    Particles<Dim>& particles = simulation.particles;
+    const int count = static_cast<int>(particles.size());
+    int lost = count;
+#pragma omp parallel for schedule(static) reduction(min : lost)
+    for (int i = 0; i < count; ++i) {
+        for (int d = 0; d < Dim; ++d) {
+            double& x = particles.position[d][i];
+            if (x >= box.low[d] && x < box.high[d]) {
+                continue;
+            }
+            if (box.periodic[d]) {
+                x -= box.length(d) * std::floor((x - box.low[d]) / box.length(d));
+                // Rounding may leave x on, or an ulp outside, the high side.
+                x = x >= box.high[d] ? box.low[d] : x;
+            }
+            if (!(x >= box.low[d] && x <= box.high[d])) {
+                lost = std::min(lost, i);
+            }
+        }
+    }
+    if (lost < count) {
+        diverge(simulation, "position not finite or outside the domain: " + place(simulation, lost));
+    }
+}
+
+template <int Dim>
+void find_neighbours(Simulation<Dim>& simulation, double skin) {
+    wrap_positions(simulation);
+    Particles<Dim>& particles = simulation.particles;
+    const int count = static_cast<int>(particles.size());
+    const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
+    CellGrid<Dim> grid;
+    grid.bin(simulation.box, radius, constant_arrays<Dim>(particles.position), count);
+    particles.permute(grid.order());
+    simulation.neighbours.build(simulation.box, *simulation.kernel, simulation.smoothing_length, skin,
+                                constant_arrays<Dim>(particles.position), count);
+}
+
+template <int Dim>
+double maximum_speed(const Simulation<Dim>& simulation) {
+    const Field& u = simulation.particles.velocity;
+    const int count = static_cast<int>(simulation.particles.size());
+    double largest = 0;
+    bool sound = true;
+#pragma omp parallel for schedule(static) reduction(max : largest) reduction(&& : sound)
+    for (int i = 0; i < count; ++i) {
+        double squared = 0;
+        for (int d = 0; d < Dim; ++d) {
+            squared += u[d][i] * u[d][i];
+        }
+        largest = std::max(largest, squared);
+        sound = sound && !std::isnan(squared);
+    }
+    return sound ? std::sqrt(largest) : std::numeric_limits<double>::quiet_NaN();
+}
+
+template <int Dim>
+double kinetic_energy(const Simulation<Dim>& simulation) {
+    const Field& u = simulation.particles.velocity;
+    return 0.5 * simulation.particle_mass *
+           deterministic_sum(static_cast<int>(simulation.particles.size()), [&](int i) {
+               double squared = 0;
+               for (int d = 0; d < Dim; ++d) {
+                   squared += u[d][i] * u[d][i];
+               }
+               return squared;
+           });
+}
+
+#define SPHVV_INSTANTIATE(Dim)                                                                               \
+    template void advance(Simulation<Dim>&);                                                                 \
+    template double even_step(const Simulation<Dim>&, double);                                               \
+    template void wrap_positions(Simulation<Dim>&);                                                          \
+    template void find_neighbours(Simulation<Dim>&, double);                                                 \
+    template double maximum_speed(const Simulation<Dim>&);                                                   \
+    template double kinetic_energy(const Simulation<Dim>&);
+SPHVV_INSTANTIATE(2)
+SPHVV_INSTANTIATE(3)
+#undef SPHVV_INSTANTIATE
+
+} // namespace sphvv::solver

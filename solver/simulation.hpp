@@ -1,0 +1,168 @@
+#pragma once
+
+#include "sphvv/solver/box.hpp"
+#include "sphvv/solver/neighbours/neighbour_list.hpp"
+#include "sphvv/solver/particles.hpp"
+#include "sphvv/solver/settings.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace sphvv::solver {
+
+template <int Dim>
+struct Simulation;
+
+/// One act of a time step. A scene's stages run in the order in which its scheme put them together.
+template <int Dim>
+struct Stage {
+    std::string name;
+    std::function<void(Simulation<Dim>&)> run;
+    double seconds = 0;
+    std::int64_t pair_evaluations = 0;
+};
+
+/// Deterministic measures of what a run did; they do not depend on the machine.
+struct Work {
+    std::int64_t pair_evaluations = 0;  ///< ordered pairs visited, summed over all sweeps
+    std::int64_t solver_iterations = 0; ///< of the linear solver
+    std::int64_t matrix_entries = 0;    ///< matrix entries multiplied, summed over iterations
+    std::int64_t particle_steps = 0;
+};
+
+/// The first condition of survival that a run violated. Ends the run; nothing else does.
+struct Diverged : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// What a surviving run must keep to; checked at the end of every step.
+struct SurvivalBounds {
+    double kinetic_energy = std::numeric_limits<double>::infinity(); ///< J (per metre of depth in 2-D)
+    double minimum_spacing = 0;                                      ///< m, between any two particles
+    std::string kinetic_energy_reason;
+    std::string minimum_spacing_reason;
+};
+
+/// A scene in motion: particles, their neighbours, the stages that advance them, and what has been counted.
+template <int Dim>
+struct Simulation {
+    Simulation(Box<Dim> domain, std::size_t particle_count) : box(domain), particles(particle_count) {}
+
+    Box<Dim> box;
+    Particles<Dim> particles;
+    NeighbourList<Dim> neighbours;
+    Settings settings; ///< of the scheme
+    const Kernel* kernel = nullptr;
+
+    double particle_spacing = 0;    ///< dx, m
+    double smoothing_length = 0;    ///< h, m
+    double density = 0;             ///< reference density rho_0, kg/m3
+    double kinematic_viscosity = 0; ///< nu, m2/s
+    double reference_speed = 0;     ///< U, m/s: the largest speed that the scene expects
+    double particle_mass = 0;       ///< kg (per metre of depth in 2-D)
+
+    double time = 0;                 ///< s
+    double end_time = 0;             ///< s
+    double time_step = 0;            ///< s, of the step in progress
+    double maximum_acceleration = 0; ///< m/s2, of the last step
+    std::int64_t step = 0;
+    SurvivalBounds survival;
+
+    std::vector<Stage<Dim>> stages;
+    Work work;
+
+    /// Adds a stage; the pair evaluations that it counts through `count_sweeps` are booked to it.
+    void add_stage(std::string name, std::function<void(Simulation&)> run) {
+        stages.push_back({std::move(name), std::move(run)});
+    }
+    /// Books `sweeps` visits of every pair in the neighbour list.
+    void count_sweeps(int sweeps) { work.pair_evaluations += sweeps * neighbours.pairs(); }
+};
+
+/// Advances one step: every stage in turn, then the conditions of survival. Throws Diverged.
+template <int Dim>
+void advance(Simulation<Dim>& simulation);
+
+/// Chooses the step so that the end time is met exactly and the last steps are even: with `limit` the largest
+/// stable step and T the time left, T / ceil(T / limit).
+template <int Dim>
+double even_step(const Simulation<Dim>& simulation, double limit);
+
+/// Puts particles that left through a periodic side back in through the opposite one. Throws Diverged if a
+/// position is not finite or left through an open side.
+template <int Dim>
+void wrap_positions(Simulation<Dim>& simulation);
+
+/// Wraps, sorts the particles by cell, and builds the neighbour list.
+template <int Dim>
+void find_neighbours(Simulation<Dim>& simulation, double skin);
+
+/// Largest |u| over the particles, m/s. NaN if any component is not a number.
+template <int Dim>
+double maximum_speed(const Simulation<Dim>& simulation);
+
+/// Sum of m |u|^2 / 2 in a fixed order, J (per metre of depth in 2-D).
+template <int Dim>
+double kinetic_energy(const Simulation<Dim>& simulation);
+
+/// Components of a vector field as the arrays that sweeps read.
+template <int Dim>
+std::array<double*, Dim> arrays(Field& field) {
+    std::array<double*, Dim> result;
+    for (int d = 0; d < Dim; ++d) {
+        result[d] = field[d];
+    }
+    return result;
+}
+
+template <int Dim>
+std::array<const double*, Dim> constant_arrays(const Field& field) {
+    std::array<const double*, Dim> result;
+    for (int d = 0; d < Dim; ++d) {
+        result[d] = field[d];
+    }
+    return result;
+}
+
+/// Calls body(i, row) for every particle, blocks of particles in parallel. The body may write to particle i
+/// only, so the result does not depend on the number of threads.
+template <int Dim, class Body>
+void for_each_row(const NeighbourList<Dim>& neighbours, Body&& body) {
+    constexpr int block = NeighbourList<Dim>::block_size;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int b = 0; b < neighbours.block_count(); ++b) {
+        const int end = std::min((b + 1) * block, neighbours.size());
+        for (int i = b * block; i < end; ++i) {
+            body(i, neighbours.row(i));
+        }
+    }
+}
+
+/// Sum of term(i) over 0 <= i < count, formed block by block in a fixed order: the same bits on any number of
+/// threads.
+template <class Term>
+double deterministic_sum(int count, Term&& term) {
+    constexpr int block = 1024;
+    const int blocks = (count + block - 1) / block;
+    std::vector<double> partial(blocks, 0.0);
+#pragma omp parallel for schedule(static)
+    for (int b = 0; b < blocks; ++b) {
+        const int end = std::min((b + 1) * block, count);
+        double total = 0;
+        for (int i = b * block; i < end; ++i) {
+            total += term(i);
+        }
+        partial[b] = total;
+    }
+    double total = 0;
+    for (const double p : partial) {
+        total += p;
+    }
+    return total;
+}
+
+} // namespace sphvv::solver
