@@ -8,8 +8,9 @@ add_library(sphvv_options INTERFACE)
 target_compile_features(sphvv_options INTERFACE cxx_std_20)
 target_compile_options(sphvv_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Wno-psabi
-  # GCC 12 takes the undefined register of its own AVX-512 intrinsics for a fault (GCC bug 105593).
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  # GCC 12 takes the undefined register of its own AVX-512 intrinsics for a fault (GCC bug 105593), and inlined
+  # std::string concatenation for overlapping copies (bug 105651).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-restrict>
   $<$<BOOL:${SPHVV_WARNINGS_AS_ERRORS}>:-Werror>
   $<$<AND:$<BOOL:${SPHVV_NATIVE}>,$<CONFIG:Release>>:-march=native>
   # Sums over neighbours carry their own `omp simd reduction`; no other reassociation is allowed, so that the

@@ -32,6 +32,13 @@ template <int Dim>
 class Particles {
 public:
     explicit Particles(std::size_t count);
+    // Moving keeps every field where it is, so references to fields survive; a copy would refer to the
+    // original's.
+    Particles(Particles&&) noexcept = default;
+    Particles(const Particles&) = delete;
+    Particles& operator=(const Particles&) = delete;
+    Particles& operator=(Particles&&) = delete;
+    ~Particles() = default;
 
     std::size_t size() const { return id.size(); }
 

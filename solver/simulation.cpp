@@ -40,6 +40,23 @@ int first_particle(int count, Predicate&& predicate) {
 }
 
 template <int Dim>
+int fastest_particle(const Particles<Dim>& particles) {
+    int fastest = 0;
+    double largest = -1;
+    for (int i = 0; i < static_cast<int>(particles.size()); ++i) {
+        double squared = 0;
+        for (int d = 0; d < Dim; ++d) {
+            squared += particles.velocity[d][i] * particles.velocity[d][i];
+        }
+        if (squared > largest) {
+            largest = squared;
+            fastest = i;
+        }
+    }
+    return fastest;
+}
+
+template <int Dim>
 void check_survival(const Simulation<Dim>& simulation) {
     const Particles<Dim>& particles = simulation.particles;
     const double energy = kinetic_energy(simulation);
@@ -57,9 +74,9 @@ void check_survival(const Simulation<Dim>& simulation) {
     }
     char text[160];
     if (energy > simulation.survival.kinetic_energy) {
-        std::snprintf(text, sizeof text, "kinetic energy %.4g above its bound %.4g (%s)", energy,
+        std::snprintf(text, sizeof text, "kinetic energy %.4g above its bound %.4g (%s), fastest ", energy,
                       simulation.survival.kinetic_energy, simulation.survival.kinetic_energy_reason.c_str());
-        diverge(simulation, text);
+        diverge(simulation, text + place(simulation, fastest_particle(particles)));
     }
     const double spacing = simulation.neighbours.minimum_distance();
     if (spacing < simulation.survival.minimum_spacing) {

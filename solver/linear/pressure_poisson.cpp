@@ -9,6 +9,17 @@
 #include <cmath>
 
 namespace sphvv::solver {
+namespace {
+
+void remove_mean(double* x, int count) {
+    const double mean = deterministic_sum(count, [&](int i) { return x[i]; }) / count;
+    for (int i = 0; i < count; ++i) {
+        x[i] -= mean;
+    }
+}
+
+} // namespace
+
 template <int Dim>
 class PairMatrix;
 } // namespace sphvv::solver
@@ -71,7 +82,7 @@ struct PressurePoisson<Dim>::CoarseSpace {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
     Eigen::VectorXd restricted;
     Eigen::VectorXd solution;
-    std::array<int, Dim> analysed_cells{};
+    int pinned_cell = 0;
 
     void compute(const PressurePoisson& problem);
     void add_correction(const PressurePoisson& problem, const double* residual, double* z);
@@ -125,13 +136,15 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
             touched_cells.clear();
         }
     }
+    pinned_cell = grid.cell_of(order[0]);
     std::vector<Eigen::Triplet<double>> entries;
     for (int c = 0; c < cells; ++c) {
         const bool empty = first[c] == first[c + 1];
         for (const auto& [other, value] : rows[c]) {
-            // Constants are in the null space: the first cell's value is pinned to make the matrix definite,
-            // which shifts the correction by a constant only. An empty cell has no equation.
-            const bool pinned = c == 0 || other == 0;
+            // Constants are in the null space: the value of the first cell that holds a particle is pinned to
+            // make the matrix definite, which shifts the correction by a constant only. An empty cell has no
+            // equation.
+            const bool pinned = c == pinned_cell || other == pinned_cell;
             if (c == other) {
                 entries.emplace_back(c, c, pinned || empty ? 1.0 : value);
             } else if (!pinned) {
@@ -153,7 +166,7 @@ void PressurePoisson<Dim>::CoarseSpace::add_correction(const PressurePoisson& pr
     for (int i = 0; i < problem.size(); ++i) {
         restricted[grid.cell_of(i)] += residual[i];
     }
-    restricted[0] = 0;
+    restricted[pinned_cell] = 0;
     solution = factor.solve(restricted);
     for (int i = 0; i < problem.size(); ++i) {
         z[i] += solution[grid.cell_of(i)];
@@ -227,18 +240,19 @@ void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
         y[i] = diagonal_[i] * x[i] - sum(total);
     });
     if (!options_.symmetric) {
-        Eigen::Map<Eigen::VectorXd> product(y, size());
-        product.array() -= product.mean();
+        remove_mean(y, size());
     }
 }
 
 template <int Dim>
 LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
-    Eigen::Map<Eigen::VectorXd> p(pressure, size());
-    source_.array() -= source_.mean();
+    // Eigen's own vectors are aligned alike in every run; how it sums over foreign memory depends on the
+    // address.
+    Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(pressure, size());
+    remove_mean(source_.data(), size());
     LinearSolve result{0, 0, true, 0};
     if (source_.norm() == 0) {
-        p.setZero();
+        std::fill(pressure, pressure + size(), 0.0);
         return result;
     }
     if (coarse_) {
@@ -249,7 +263,8 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
         solver.setTolerance(options_.tolerance);
         solver.setMaxIterations(options_.maximum_iterations);
         solver.compute(matrix);
-        p = solver.solveWithGuess(source_, p);
+        const Eigen::VectorXd guess = p;
+        p = solver.solveWithGuess(source_, guess);
         result.iterations = static_cast<int>(solver.iterations());
         result.residual = solver.error();
         result.converged = solver.info() == Eigen::Success;
@@ -262,7 +277,8 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     } else {
         run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);
     }
-    p.array() -= p.mean();
+    remove_mean(p.data(), size());
+    std::copy(p.begin(), p.end(), pressure);
     return result;
 }
 

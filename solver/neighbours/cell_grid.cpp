@@ -1,5 +1,7 @@
 #include "sphvv/solver/neighbours/cell_grid.hpp"
 
+#include "sphvv/solver/settings.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +13,11 @@ void CellGrid<Dim>::bin(const Box<Dim>& box, double radius, std::array<const dou
     box_ = box;
     int total = 1;
     for (int d = 0; d < Dim; ++d) {
+        if (box.periodic[d] && box.length(d) < radius * (1 - 1e-12)) {
+            throw UserError("the periodic box is " + shortest(box.length(d)) +
+                            " m wide, narrower than the neighbour search of " + shortest(radius) +
+                            " m; use more particles to a side or a smaller h_over_dx");
+        }
         // The cap keeps the grid no larger than the particles need when the box is huge beside the radius.
         const double fitting = std::floor(box.length(d) / radius);
         cells_[d] = static_cast<int>(

@@ -22,7 +22,8 @@ public:
     };
 
     /// Bins positions. They must be finite and inside the box. Cells are numbered with direction 0 fastest;
-    /// within a cell the particles keep their order.
+    /// within a cell the particles keep their order. Throws UserError if a periodic direction is shorter than
+    /// the radius: a pair could then meet through images two lengths apart, which are not looked for.
     void bin(const Box<Dim>& box, double radius, std::array<const double*, Dim> position, int count);
 
     int cell_count() const { return static_cast<int>(start_.size()) - 1; }

@@ -182,15 +182,17 @@ void NeighbourList<Dim>::summarise() {
 template <int Dim>
 bool NeighbourList<Dim>::follow(std::array<const double*, Dim> displacement) {
     double farthest = 0;
-#pragma omp parallel for schedule(static) reduction(max : farthest)
+    bool sound = true;
+#pragma omp parallel for schedule(static) reduction(max : farthest) reduction(&& : sound)
     for (int i = 0; i < count_; ++i) {
         double squared = 0;
         for (int d = 0; d < Dim; ++d) {
             squared += displacement[d][i] * displacement[d][i];
         }
         farthest = std::max(farthest, squared);
+        sound = sound && !std::isnan(squared);
     }
-    if (!(2 * std::sqrt(farthest) <= skin_width_)) {
+    if (!sound || 2 * std::sqrt(farthest) > skin_width_) {
         return false;
     }
 #pragma omp parallel for schedule(dynamic, 1)

@@ -34,7 +34,8 @@ public:
                std::array<const double*, Dim> position, int count);
 
     /// Follows particles that moved since the list was built: r_ij += d_i - d_j, F_ij anew. Returns false,
-    /// and leaves the list as it was, if some moved so far that pairs may be missing (2 max|d| > skin).
+    /// and leaves the list as it was, if some moved so far that pairs may be missing (2 max|d| > skin) or by
+    /// NaN.
     bool follow(std::array<const double*, Dim> displacement);
 
     Row row(int i) const {

@@ -23,7 +23,7 @@ template <int Dim>
 struct Fields {
     Field& pressure;
     Field& velocity_next;   ///< u*, then u^{n+1}, while velocity still holds u^n
-    Field& renormalisation; ///< L_i at r*, row by row
+    Field* renormalisation; ///< L_i at r*, row by row; none if nothing needs it
     bool normalised;
     bool schwaiger;
     double eta_squared;
@@ -86,12 +86,12 @@ void add_viscosity(Simulation<Dim>& s, Fields<Dim>& f) {
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const auto next = arrays<Dim>(f.velocity_next);
     const double dt_nu = s.time_step * s.kinematic_viscosity;
-    const bool needs_L = f.normalised || f.schwaiger;
+    const bool needs_L = f.renormalisation != nullptr;
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         Vector<Dim> laplacian;
         if (needs_L) {
             const Matrix<Dim> L = renormalisation<Dim>(row, f.volume);
-            write_matrix<Dim>(f.renormalisation, i, L);
+            write_matrix<Dim>(*f.renormalisation, i, L);
             laplacian = f.schwaiger ? laplacian_schwaiger<Dim>(row, i, u, f.volume, L)
                                     : laplacian_morris<Dim>(row, i, u, f.volume, f.eta_squared);
         } else {
@@ -113,7 +113,7 @@ void solve_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         double divergence = 0;
         if (f.normalised) {
-            const Matrix<Dim> L = read_matrix<Dim>(f.renormalisation, i);
+            const Matrix<Dim> L = read_matrix<Dim>(*f.renormalisation, i);
             divergence = (vector_gradient_difference<Dim>(row, i, u, f.volume) * L).trace();
         } else {
             divergence = divergence_difference<Dim>(row, i, u, f.volume);
@@ -121,10 +121,10 @@ void solve_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
         f.poisson.source(i) = scale * divergence;
         f.poisson.diagonal(i) =
             f.schwaiger ? laplacian_schwaiger_weights<Dim>(
-                              row, f.volume, read_matrix<Dim>(f.renormalisation, i), f.poisson.weights(i))
+                              row, f.volume, read_matrix<Dim>(*f.renormalisation, i), f.poisson.weights(i))
                         : laplacian_morris_weights<Dim>(row, f.volume, f.eta_squared, f.poisson.weights(i));
     });
-    s.count_sweeps(2);
+    s.count_sweeps(f.schwaiger ? 3 : 2);
     const LinearSolve solve = f.poisson.solve(f.pressure[0]);
     s.work.solver_iterations += solve.iterations;
     s.work.matrix_entries += solve.matrix_entries;
@@ -146,7 +146,7 @@ void project(Simulation<Dim>& s, Fields<Dim>& f) {
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         Vector<Dim> gradient = gradient_difference<Dim>(row, i, f.pressure[0], f.volume);
         if (f.normalised) {
-            gradient = read_matrix<Dim>(f.renormalisation, i) * gradient;
+            gradient = read_matrix<Dim>(*f.renormalisation, i) * gradient;
         }
         for (int d = 0; d < Dim; ++d) {
             next[d][i] -= scale * gradient[d];
@@ -185,6 +185,7 @@ template <int Dim>
 void add_divergence_free_stages(Simulation<Dim>& s) {
     using Poisson = PressurePoisson<Dim>;
     const bool schwaiger = s.settings.word("laplacian") == "schwaiger";
+    const bool normalised = s.settings.word("gradient") == "normalised";
     const double eta = s.settings.number("eta_over_h") * s.smoothing_length;
     typename Poisson::Options options;
     options.tolerance = s.settings.number("pressure_tolerance");
@@ -193,12 +194,13 @@ void add_divergence_free_stages(Simulation<Dim>& s) {
                                  ? Poisson::Preconditioner::jacobi
                                  : Poisson::Preconditioner::two_level;
     Particles<Dim>& particles = s.particles;
-    auto fields = std::make_shared<Fields<Dim>>(
-        Fields<Dim>{particles.field("pressure", 1, Lifetime::state, "pressure_poisson"),
-                    particles.field("velocity_next", Dim, Lifetime::scratch, "viscosity"),
-                    particles.field("renormalisation", Dim * Dim, Lifetime::scratch, "viscosity"),
-                    s.settings.word("gradient") == "normalised", schwaiger, eta * eta,
-                    UniformVolume{s.particle_mass / s.density}, Poisson(options)});
+    auto fields = std::make_shared<Fields<Dim>>(Fields<Dim>{
+        particles.field("pressure", 1, Lifetime::state, "pressure_poisson"),
+        particles.field("velocity_next", Dim, Lifetime::scratch, "viscosity"),
+        normalised || schwaiger
+            ? &particles.field("renormalisation", Dim * Dim, Lifetime::scratch, "viscosity")
+            : nullptr,
+        normalised, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density}, Poisson(options)});
     s.add_stage("time_step", choose_time_step<Dim>);
     s.add_stage("drift", drift<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });

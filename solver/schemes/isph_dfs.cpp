@@ -8,9 +8,10 @@ namespace {
 
 /// Moves every particle by dr_i = C u_max dt R_i and carries velocity and pressure along by their first-order
 /// Taylor expansion, A(r + dr) = A(r) + grad A . dr. (The thesis corrects the velocity; the pressure is
-/// corrected here too, because it is compared, and guessed from, at the new position.)
+/// corrected here too, because it is compared, and guessed from, at the new position.) Without a field for
+/// the corrections there are none.
 template <int Dim>
-void shift(Simulation<Dim>& s, Field& displacement, Field& shifted, bool corrected) {
+void shift(Simulation<Dim>& s, Field& displacement, Field* correction) {
     Particles<Dim>& particles = s.particles;
     Field& pressure = particles.field("pressure", 1, Lifetime::state, "shifting");
     const UniformVolume volume{s.particle_mass / s.density};
@@ -22,32 +23,40 @@ void shift(Simulation<Dim>& s, Field& displacement, Field& shifted, bool correct
                            static_cast<int>(particles.size()));
     }
     const double length = s.settings.number("shift_coefficient") * maximum_speed(s) * s.time_step;
+    const double longest = s.settings.number("shift_limit") * s.particle_spacing;
     const auto u = constant_arrays<Dim>(particles.velocity);
     const double* p = pressure[0];
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
-        const Vector<Dim> dr = length * shifting_vector<Dim>(row, s.neighbours.support_radius());
-        Vector<Dim> velocity_change = Vector<Dim>::Zero();
-        double pressure_change = 0;
-        if (corrected) {
-            const Vector<Dim> L_dr = renormalisation<Dim>(row, volume) * dr;
-            velocity_change = vector_gradient_difference<Dim>(row, i, u, volume) * L_dr;
-            pressure_change = gradient_difference<Dim>(row, i, p, volume).dot(L_dr);
-        }
+        Vector<Dim> dr = length * shifting_vector<Dim>(row, s.neighbours.support_radius());
+        dr *= std::min(1.0, longest / std::max(dr.norm(), 1e-300));
         for (int d = 0; d < Dim; ++d) {
             displacement[d][i] = dr[d];
-            shifted[d][i] = velocity_change[d];
         }
-        shifted[Dim][i] = pressure_change;
+        if (correction) {
+            const Vector<Dim> L_dr = renormalisation<Dim>(row, volume) * dr;
+            const Vector<Dim> velocity_change = vector_gradient_difference<Dim>(row, i, u, volume) * L_dr;
+            for (int d = 0; d < Dim; ++d) {
+                (*correction)[d][i] = velocity_change[d];
+            }
+            (*correction)[Dim][i] = gradient_difference<Dim>(row, i, p, volume).dot(L_dr);
+        }
     });
-    s.count_sweeps(corrected ? 4 : 1);
+    s.count_sweeps(correction ? 4 : 1);
     const int count = static_cast<int>(particles.size());
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < count; ++i) {
         for (int d = 0; d < Dim; ++d) {
             particles.position[d][i] += displacement[d][i];
-            particles.velocity[d][i] += shifted[d][i];
         }
-        pressure[0][i] += shifted[Dim][i];
+    }
+    if (correction) {
+#pragma omp parallel for schedule(static)
+        for (int i = 0; i < count; ++i) {
+            for (int d = 0; d < Dim; ++d) {
+                particles.velocity[d][i] += (*correction)[d][i];
+            }
+            pressure[0][i] += (*correction)[Dim][i];
+        }
     }
 }
 
@@ -55,11 +64,11 @@ template <int Dim>
 void assemble(Simulation<Dim>& s) {
     projection::add_divergence_free_stages(s);
     Field& displacement = s.particles.field("velocity_next", Dim, Lifetime::scratch, "shifting");
-    Field& shifted = s.particles.field("shift_correction", Dim + 1, Lifetime::scratch, "shifting");
-    const bool corrected = s.settings.word("shift_correction") == "first";
-    s.add_stage("shifting", [&displacement, &shifted, corrected](Simulation<Dim>& sim) {
-        shift(sim, displacement, shifted, corrected);
-    });
+    Field* correction = s.settings.word("shift_correction") == "first"
+                            ? &s.particles.field("shift_correction", Dim + 1, Lifetime::scratch, "shifting")
+                            : nullptr;
+    s.add_stage("shifting",
+                [&displacement, correction](Simulation<Dim>& sim) { shift(sim, displacement, correction); });
 }
 
 } // namespace
@@ -73,6 +82,7 @@ const Scheme& isph_dfs() {
         .compressible = false,
         .keys = joined(projection::keys(),
                        {Key::number("shift_coefficient", 0.04, 0, 1, "1", "C in dr = C u_max dt R"),
+                        Key::number("shift_limit", 0.1, 0, 1e3, "1", "|dr| <= this dx"),
                         Key::word("shift_correction", "first", {"first", "none"},
                                   "Taylor correction of the shifted fields")}),
         .assemble_2d = assemble<2>,

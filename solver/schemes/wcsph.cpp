@@ -242,7 +242,7 @@ const Scheme& wcsph() {
         .source = "Lee 2008 §1.1; Issa 2005 §3 (predictor-corrector)",
         .compressible = true,
         .keys = joined(
-            common_keys("wendland_c2", 2),
+            common_keys("wendland_c2", 1.3),
             {Key::word("integrator", "explicit", {"explicit", "predictor_corrector"},
                        "explicit: Lee 2008, first order; predictor_corrector: Issa 2005, second order"),
              Key::number("c0_over_u", 10, 1, 1e4, "1", "sound speed over the largest expected speed"),

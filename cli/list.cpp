@@ -1,0 +1,142 @@
+#include "sphvv/analytic/solutions.hpp"
+#include "sphvv/solver/schemes.hpp"
+#include "sphvv/verification/cases.hpp"
+
+#include "commands.hpp"
+#include "output.hpp"
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+namespace sphvv::cli {
+namespace {
+
+using Entries = nlohmann::ordered_json;
+
+template <class Registry>
+Entries entries_of(const Registry& registry) {
+    Entries entries = Entries::array();
+    for (const auto* entry : registry) {
+        entries.push_back({{"name", entry->name}, {"summary", entry->summary}, {"source", entry->source}});
+    }
+    return entries;
+}
+
+Entries keys_tree(const std::vector<solver::Key>& keys) {
+    Entries list = Entries::array();
+    for (const solver::Key& key : keys) {
+        list.push_back({{"name", key.name},
+                        {"value", key.value},
+                        {"unit", key.unit},
+                        {"accepted", key.accepted()},
+                        {"summary", key.summary}});
+    }
+    return list;
+}
+
+Entries cases() {
+    Entries entries = entries_of(verification::cases::all());
+    for (Entries& entry : entries) {
+        entry["keys"] = keys_tree(case_keys(verification::cases::find(entry["name"].get<std::string>())));
+    }
+    return entries;
+}
+
+Entries schemes() {
+    Entries entries = entries_of(solver::schemes::all());
+    for (Entries& entry : entries) {
+        const solver::Scheme& scheme = solver::schemes::find(entry["name"].get<std::string>());
+        entry["formula"] = scheme.formula;
+        entry["keys"] = keys_tree(scheme.keys);
+    }
+    return entries;
+}
+
+Entries studies() {
+    Entries entries = Entries::array();
+    for (const verification::Case* flow : verification::cases::all()) {
+        for (const verification::Study& study : flow->studies) {
+            std::string summary = std::string(to_string(study.tier)) + " tier, " + study.cost + ":";
+            for (const std::string& scheme : study.schemes) {
+                summary += " " + scheme;
+            }
+            summary += " at n =";
+            for (const int n : study.ladder) {
+                summary += " " + std::to_string(n);
+            }
+            entries.push_back({{"name", study.name}, {"summary", summary}, {"source", flow->source}});
+        }
+    }
+    return entries;
+}
+
+struct Subject {
+    const char* name;
+    Entries (*entries)();
+};
+
+const std::vector<Subject>& subjects() {
+    static const std::vector<Subject> all{
+        {"cases", cases},
+        {"schemes", schemes},
+        {"kernels", [] { return entries_of(solver::kernels::all()); }},
+        {"studies", studies},
+        {"solutions", [] { return entries_of(analytic::solutions::all()); }},
+    };
+    return all;
+}
+
+int list(const std::string& wanted, const Common& common) {
+    Entries found = Entries::array();
+    std::string text;
+    for (const Subject& subject : subjects()) {
+        if (!wanted.empty() && wanted != subject.name) {
+            continue;
+        }
+        if (wanted.empty()) {
+            text += std::string(text.empty() ? "" : "\n") + subject.name + "\n";
+        }
+        for (Entries entry : subject.entries()) {
+            std::string name = entry["name"];
+            name.resize(std::max<std::size_t>(name.size(), 26), ' ');
+            text += (wanted.empty() ? "  " : "") + name + "  " + entry["summary"].get<std::string>() + "  [" +
+                    entry["source"].get<std::string>() + "]\n";
+            if (wanted.empty()) {
+                entry["kind"] = subject.name;
+            }
+            found.push_back(entry);
+        }
+    }
+    if (!common.json.empty()) {
+        write_text(common.json, found.dump(2) + "\n");
+    }
+    if (common.json != "-") {
+        std::cout << text;
+    }
+    return 0;
+}
+
+} // namespace
+
+void add_list(CLI::App& app, Act& act) {
+    struct Options {
+        Common common;
+        std::string subject;
+    };
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand("list", "what there is, one line each with its source");
+    std::vector<std::string> names;
+    for (const Subject& subject : subjects()) {
+        names.emplace_back(subject.name);
+    }
+    command
+        ->add_option("subject", options->subject,
+                     "cases, schemes, kernels, studies or solutions; all if left out")
+        ->check(CLI::IsMember(names));
+    add_common(*command, options->common);
+    command->footer("Example: sphvv list schemes --json -");
+    command->callback(
+        [options, &act] { act = [options] { return list(options->subject, options->common); }; });
+}
+
+} // namespace sphvv::cli

@@ -1,0 +1,284 @@
+"""What the verdicts amount to: groups of studies, the status of each study, the worst findings, the waivers."""
+
+import re
+from dataclasses import dataclass, field
+
+from . import numbers
+
+FEWEST_RUNGS = 4  # of a ladder that may bear an order verdict (verification.md §3)
+
+# Status of a study -> (word on the page, sign beside it, style). The word always stands beside the colour.
+STATUSES = {
+    "pass": ("PASS", "✓"),
+    "fail": ("FAIL", "✗"),
+    "inconclusive": ("INCONCLUSIVE", "?"),
+    "waived": ("WAIVED", "≈"),
+    "lost": ("ENDED EARLY", "✗"),
+    "lost-expected": ("ENDED EARLY", "†"),
+    "none": ("no verdict", "–"),
+}
+
+GLOSSARY = [
+    ("PASS", "The fitted order and the order of the finest pair both lie inside the expected band."),
+    ("FAIL", "The whole 95 % confidence interval of the fitted order lies outside the expected band."),
+    ("INCONCLUSIVE", "The ladder cannot decide: the interval straddles an edge of the band, or the residuals show a floor, "
+                     "round-off or noise, which the reason names."),
+    ("WAIVED", "A FAIL or INCONCLUSIVE that the study accepts, with the reason it states. Always listed."),
+    ("ENDED EARLY", "A run met its survival criterion before the end time (a field not finite, a particle outside the domain, "
+                    "kinetic energy above its bound, or particles too close together). † marks an end that the study expects."),
+    ("no verdict", f"No order was demanded, or the ladder has fewer than {FEWEST_RUNGS} rungs: errors are shown, orders are not judged."),
+]
+
+NORMS = [
+    ("L1", "Σ V |φ − φₑ| / Σ V, with V the particle volume, φ the computed and φₑ the exact field."),
+    ("L2", "√( Σ V (φ − φₑ)² / Σ V ); the Euclidean length of the error for vectors."),
+    ("L∞", "max |φ − φₑ|."),
+    ("relative", "The norm of the error divided by the same norm of φₑ. L1 ≤ L2 ≤ L∞ holds for absolute norms only."),
+    ("order", "log(e₁/e₂) / log(h₁/h₂) of a rung and the next coarser one; the fit is the least-squares slope of log e on "
+              "log h, with the half-width of its 95 % confidence interval (Student's t)."),
+    ("n, h, dx, N", "Particle spacings along the reference length; smoothing length; particle spacing; number of particles."),
+    ("pair evaluations", "Particle pairs visited by all loops of a run: a count of work that does not depend on the machine."),
+    ("front", "The schemes that no other one beats at equal error; for the rest, by what factor they cost more "
+              "(log-log interpolation, no extrapolation)."),
+]
+
+
+def early_ends(study):
+    """The rungs of a study that did not survive."""
+    return [sample for sample in study["samples"] if not sample["survived"]]
+
+
+def expects_early_end(study):
+    return study["expected"]["fate"] == "ends_early"
+
+
+def is_short(study):
+    return len(study["samples"]) < FEWEST_RUNGS
+
+
+def status(study):
+    """The key in STATUSES that a study amounts to."""
+    verdict = study["fit"]["verdict"]
+    if verdict in ("FAIL", "INCONCLUSIVE") and study["fit"]["waiver"]:
+        return "waived"
+    if verdict == "NONE":
+        if not early_ends(study):
+            return "none"
+        return "lost-expected" if expects_early_end(study) else "lost"
+    return verdict.lower()
+
+
+def expectation(study):
+    """The demanded band in words: 1.5…2.5, ≥ 0.9, or nothing."""
+    expected = study["expected"]
+    return numbers.band(expected["low"], expected["high"])
+
+
+def fitted_order(fit):
+    """1.87 ± 0.12, or nothing where there is no fit."""
+    if fit["order"] is None:
+        return ""
+    interval = fit["ci95"]
+    text = numbers.for_page(numbers.order(fit["order"]))
+    return text if interval is None else f"{text} ± {numbers.order(interval)}"
+
+
+def rung_list(samples):
+    return ", ".join(numbers.integer(sample["n"]) for sample in samples)
+
+
+def fit_line(study):
+    """`fit: order p ± CI (expected a…b, source)`, or why there is no order; the verdict is set apart by the page."""
+    fit, expected = study["fit"], study["expected"]
+    if fit["order"] is None:
+        if early_ends(study):
+            return f"fit: none; {len(early_ends(study))} of {len(study['samples'])} rungs ended early"
+        if is_short(study):
+            verbs = ("shows", "bears") if len(study["samples"]) == 1 else ("show", "bear")
+            return f"fit: none; {plural(len(study['samples']), 'rung')} {verbs[0]} errors, but {verbs[1]} no order verdict"
+        return "fit: none"
+    band = expectation(study)
+    demand = ", ".join(filter(None, [band and f"expected {band}", band and expected["source"]])) or "nothing demanded"
+    norm = {"l1": "L1", "l2": "", "linf": "L∞"}.get(fit["norm"], fit["norm"])
+    return f"fit{' of ' + norm if norm else ''}: order {fitted_order(fit)} ({demand})"
+
+
+def matrix_note(study):
+    """The small line below the word in the verdict matrix."""
+    parts = [fitted_order(study["fit"])]
+    lost = early_ends(study)
+    if lost:
+        parts.append(f"{'†' if expects_early_end(study) else ''}n = {rung_list(lost)} ended early")
+    elif expects_early_end(study):
+        parts.append("survived, against expectation")
+    elif is_short(study) and study["fit"]["verdict"] == "NONE":
+        parts.append(plural(len(study["samples"]), "rung"))
+    return "; ".join(filter(None, parts))
+
+
+@dataclass
+class Group:
+    """All that concerns one case with its settings."""
+    label: str
+    case: str
+    studies: list = field(default_factory=list)
+    runs: list = field(default_factory=list)
+    fronts: list = field(default_factory=list)
+    claims: list = field(default_factory=list)
+
+    @property
+    def schemes(self):
+        return unique(study["scheme"] for study in self.studies)
+
+    @property
+    def fields(self):
+        return unique(study["field"] for study in self.studies)
+
+    def of_scheme(self, scheme):
+        return [study for study in self.studies if study["scheme"] == scheme]
+
+    def of_field(self, name):
+        return [study for study in self.studies if study["field"] == name]
+
+    def cell(self, scheme, name):
+        """Studies in one cell of the verdict matrix: one, or several that differ in their tier."""
+        return [study for study in self.studies if study["scheme"] == scheme and study["field"] == name]
+
+    def results(self):
+        """The result files that contribute to this group."""
+        return unique_objects(study["result"] for study in self.studies)
+
+
+def unique(values):
+    return list(dict.fromkeys(values))
+
+
+def unique_objects(values):
+    return list({id(value): value for value in values}.values())
+
+
+NUMERAL = r"[0-9]+(?:\.[0-9]+)?"
+
+
+def natural(text):
+    """A key that sorts re=10, re=100, re=1000 as people do."""
+    return [(1, float(part), "") if re.fullmatch(NUMERAL, part) else (0, 0.0, part)
+            for part in re.split(f"({NUMERAL})", text) if part]
+
+
+def in_groups(results):
+    """The studies by group: cases in the order of the file, the groups of a case in natural order."""
+    groups = {}
+    for study in results["studies"]:
+        groups.setdefault(study["group"], Group(study["group"], study["case"])).studies.append(study)
+    for kind in ("runs", "fronts", "claims"):
+        for entry in results[kind]:
+            if entry["group"] in groups:
+                getattr(groups[entry["group"]], kind).append(entry)
+    cases = unique(group.case for group in groups.values())
+    return sorted(groups.values(), key=lambda group: (cases.index(group.case), natural(group.label)))
+
+
+def all_schemes(results):
+    """Every scheme in the order in which the files name them, which is the order in which the user asked for them."""
+    return unique([study["scheme"] for study in results["studies"]]
+                  + [curve["scheme"] for front in results["fronts"] for curve in front["curves"]])
+
+
+@dataclass
+class Finding:
+    """One line of the findings: how bad (0 is worst), what, where, why, and the study it links to."""
+    severity: int
+    status: str
+    where: str
+    title: str
+    reasons: list
+    study: dict
+
+
+def early_end_reasons(group, scheme):
+    """Each early end of a scheme once, though every field of the study repeats it: where, when, by which criterion."""
+    reasons = [f"n = {numbers.integer(run['n'])}"
+               + (f", seed {run['seed']}" if is_reseeded(group, scheme) and run["seed"] is not None else "")
+               + f": {run['diagnosis'] or 'no diagnosis given'}"
+               for run in group.runs if run["scheme"] == scheme and not run["survived"]]
+    if not reasons:
+        reasons = unique(f"n = {numbers.integer(sample['n'])}: {sample['diagnosis'] or 'no diagnosis given'}"
+                         for study in group.of_scheme(scheme) for sample in early_ends(study))
+    return reasons
+
+
+def is_reseeded(group, scheme):
+    return len({run["seed"] for run in group.runs if run["scheme"] == scheme}) > 1
+
+
+def early_end_finding(group, scheme):
+    studies = [study for study in group.of_scheme(scheme) if early_ends(study)]
+    if not studies:
+        return []
+    expected = all(expects_early_end(study) for study in studies)
+    title = "ended early, as expected" if expected else "ended early"
+    return [Finding(4 if expected else 1, "lost-expected" if expected else "lost", f"{group.label}, {scheme}", title,
+                    early_end_reasons(group, scheme), studies[0])]
+
+
+def verdict_finding(group, study):
+    fit, place = study["fit"], f"{group.label}, {study['scheme']}, {study['field']}"
+    kind = status(study)
+    reason = fit["reason"] or "no reason given"
+    if kind == "waived":
+        return [Finding(3, kind, place, f"{fit['verdict']}, waived", [reason, "Waiver: " + fit["waiver"]], study)]
+    if kind in ("fail", "inconclusive"):
+        return [Finding(0 if kind == "fail" else 2, kind, place, fit_line(study), [reason], study)]
+    if expects_early_end(study) and not early_ends(study):
+        return [Finding(2, kind, place, "survived, though the study expects it to end early", [reason], study)]
+    return []
+
+
+def findings(groups):
+    """All findings, worst first; equal ones in the order of the page."""
+    found = []
+    for group in groups:
+        for scheme in group.schemes:
+            found += early_end_finding(group, scheme)
+        for study in group.studies:
+            found += verdict_finding(group, study)
+    return sorted(found, key=lambda finding: finding.severity)
+
+
+def waivers(groups):
+    """Every study with a waiver, needed or not."""
+    return [study for group in groups for study in group.studies if study["fit"]["waiver"]]
+
+
+def counts(groups):
+    """Number of studies by status."""
+    tally = dict.fromkeys(STATUSES, 0)
+    for group in groups:
+        for study in group.studies:
+            tally[status(study)] += 1
+    return tally
+
+
+def summary(groups, found):
+    """The report in one sentence."""
+    tally = counts(groups)
+    judged = sum(tally[key] for key in ("pass", "fail", "inconclusive", "waived"))
+    words = [f"{tally[key]} {STATUSES[key][0]}" for key in ("pass", "fail", "inconclusive", "waived") if tally[key]]
+    cases = unique(group.case for group in groups)
+    schemes = unique(study["scheme"] for group in groups for study in group.studies)
+    text = f"{plural(len(schemes), 'scheme')} on {plural(len(cases), 'case')} in {plural(len(groups), 'setting')}: "
+    text += f"{plural(judged, 'order verdict')}" + (f" ({', '.join(words)})" if words else "")
+    silent = tally["none"]
+    if silent:
+        text += f", {silent} without an order verdict"
+    ends = [finding for finding in found if finding.status in ("lost", "lost-expected")]
+    if ends:
+        expected = sum(finding.status == "lost-expected" for finding in ends)
+        known = "as expected" if expected == len(ends) else f"{expected} of them as expected" if expected else "unexpectedly"
+        text += f"; {plural(len(ends), 'ladder')} ended early, {known}"
+    return text + "."
+
+
+def plural(number, word):
+    return f"{number} {word}{'' if number == 1 else 's'}"

@@ -1,0 +1,442 @@
+"""The page: gathers groups, tables and figures from merged results and renders them into one self-contained HTML file."""
+
+import os
+from dataclasses import dataclass
+
+import jinja2
+from markupsafe import Markup
+
+from . import figures, findings, numbers
+from .tables import Column, Names, Span, Table
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+@dataclass
+class Report:
+    """All files of a report by relative name, and the number of studies by status."""
+    files: dict
+    counts: dict
+
+
+# ----------------------------------------------------------------------------------------------- table builders
+
+SAMPLE_COLUMNS = [
+    Column("n", "n", "integer"), Column("h", "h", "aligned", "m", "$h$"), Column("dx", "dx", "aligned", "m", r"$\Delta x$"),
+    Column("particles", "N", "integer", latex="$N$"), Column("dt", "Δt", "scientific", "s", r"$\Delta t$"),
+    Column("steps", "steps", "integer"),
+    Column("l1", "L1", "scientific", latex="$L_1$"), Column("order_l1", "order", "order"),
+    Column("l2", "L2", "scientific", latex="$L_2$"), Column("order_l2", "order", "order"),
+    Column("linf", "L∞", "scientific", latex=r"$L_\infty$"), Column("order_linf", "order", "order"),
+    Column("seconds", "seconds", "significant"), Column("pair_evaluations", "pair evaluations", "scientific"),
+]
+# In the CSV only: everything else that a sample holds.
+MORE_SAMPLE_COLUMNS = [Column(key, key, shown=False) for key in (
+    "l1_abs", "l2_abs", "linf_abs", "relative", "l2_spread", "seeds", "seconds_spread", "repeats", "cpu_seconds",
+    "solver_iterations", "matrix_entries", "particle_steps", "survived", "diagnosis")]
+
+
+def verdict_words(study):
+    """The verdict as text for the files, with its waiver."""
+    fit = study["fit"]
+    word = findings.STATUSES[findings.status(study)][0]
+    return f"{fit['verdict']}, waived: {fit['waiver']}" if findings.status(study) == "waived" else word
+
+
+def study_title(study):
+    tier = f" ({study['tier']} tier)" if study["tier_matters"] else ""
+    return f"{study['field']}, {study['scheme']}{tier}"
+
+
+def error_kind(study):
+    """Whether a study's errors are relative, and what that means for reading them."""
+    relative = {sample["relative"] for sample in study["samples"] if sample["survived"]}
+    if relative == {False}:
+        unit = figures.FIELD_UNITS.get(study["field"])
+        return "absolute errors" + (f" in {unit}" if unit else "")
+    return "relative errors" if relative != {True, False} else "relative and absolute errors mixed, see the CSV"
+
+
+def errors_table(names, study):
+    """The ladder of one scheme and field: errors and orders by rung."""
+    fit = study["fit"]
+    rows, spans = [], {}
+    for index, sample in enumerate(study["samples"]):
+        row = dict(sample)
+        for key in ("order_l1", "order_l2", "order_linf"):
+            row[key] = fit[key][index] if fit[key] else None
+        if not sample["survived"]:
+            spans[index] = Span("l1", "order_linf", "ended early: " + (sample["diagnosis"] or "no diagnosis given"))
+        rows.append(row)
+    columns = SAMPLE_COLUMNS + ([Column("l2_spread", "seed spread", "significant")] if has_spread(study) else [])
+    columns = columns + [column for column in MORE_SAMPLE_COLUMNS if column.key not in {c.key for c in columns}]
+    notes = [findings.fit_line(study) + (" " if fit["order"] is not None else ": ") + verdict_words(study)]
+    if fit["reason"]:
+        notes.append(f"Reason: {fit['reason']}")
+    return Table(names.unique(study["group"], study["scheme"], study["field"], "errors"),
+                 f"{error_kind(study)}, {study_title(study)}", columns, rows, notes, spans, style="wide", context=study["group"])
+
+
+def has_spread(study):
+    return any(sample["l2_spread"] is not None for sample in study["samples"])
+
+
+def matrix_table(names, groups):
+    """The verdict matrix, one line a study."""
+    rows = [{"group": study["group"], "scheme": study["scheme"], "field": study["field"], "tier": study["tier"],
+             "verdict": study["fit"]["verdict"], "status": findings.STATUSES[findings.status(study)][0],
+             "order": study["fit"]["order"], "ci95": study["fit"]["ci95"],
+             "low": study["expected"]["low"], "high": study["expected"]["high"],
+             "rungs": len(study["samples"]), "ended_early": len(findings.early_ends(study)),
+             "reason": study["fit"]["reason"], "waiver": study["fit"]["waiver"]}
+            for group in groups for study in group.studies]
+    columns = [Column("group", "case and settings"), Column("scheme", "scheme"), Column("field", "field"),
+               Column("tier", "tier", shown=False), Column("status", "verdict"), Column("order", "order", "order"),
+               Column("ci95", "± 95 %", "order"), Column("low", "expected from", "order"), Column("high", "to", "order"),
+               Column("rungs", "rungs", "integer"), Column("ended_early", "ended early", "integer"),
+               Column("verdict", "verdict", shown=False), Column("reason", "reason", shown=False),
+               Column("waiver", "waiver", shown=False)]
+    return Table(names.unique("verdicts"), "Verdicts", columns, rows)
+
+
+def parameters_table(names, group, case):
+    """Parameters of the case, with the values that this group gives them."""
+    settings = group.studies[0]["settings"]
+    rows = []
+    for parameter in case["parameters"] if case else []:
+        value = settings.get(parameter["name"], parameter["value"])
+        rows.append({"name": parameter["name"], "value": value, "unit": parameter["unit"] or "1",
+                     "summary": parameter["summary"]})
+    if not rows:
+        return None
+    return Table(names.unique(group.label, "parameters"), "parameters",
+                 [Column("name", "name"), Column("value", "value", "general"), Column("unit", "unit"), Column("summary", "meaning")],
+                 rows, style="prose", context=group.label)
+
+
+def common_rung(group):
+    """The finest n that every scheme of the group has run; None if they share none."""
+    rungs = [{sample["n"] for study in group.of_scheme(scheme) for sample in study["samples"]} for scheme in group.schemes]
+    shared = set.intersection(*rungs) if rungs else set()
+    return max(shared) if shared else None
+
+
+def run_at(group, scheme, n):
+    runs = [run for run in group.runs if run["scheme"] == scheme and run["n"] == n]
+    return next((run for run in runs if run["survived"]), runs[0] if runs else {})
+
+
+def sample_at(study, n):
+    return next((sample for sample in study["samples"] if sample["n"] == n), None)
+
+
+def per_step(count, sample):
+    return count / sample["steps"] if count is not None and sample.get("steps") else None
+
+
+def throughput(sample):
+    """Particle-steps per second of stepping."""
+    return sample["particle_steps"] / sample["seconds"] if sample.get("particle_steps") and sample.get("seconds") else None
+
+
+def comparison_table(names, group):
+    """All schemes of a group at one rung: error beside cost."""
+    n = common_rung(group)
+    if n is None:
+        return None
+    rows, spans = [], {}
+    for scheme in group.schemes:
+        samples = {study["field"]: sample_at(study, n) for study in group.of_scheme(scheme)}
+        sample = next(filter(None, samples.values()))
+        run = run_at(group, scheme, n)
+        iterations = sample["solver_iterations"]
+        row = {"scheme": scheme, "seconds": sample["seconds"], "pair_evaluations": sample["pair_evaluations"],
+               "solver_iterations": iterations, "iterations_per_step": per_step(iterations, sample) or None,
+               "throughput": throughput(sample), "bytes_per_particle": run.get("bytes_per_particle"),
+               "energy_error": run.get("energy_error"), "minimum_spacing": run.get("minimum_spacing"),
+               "survived": sample["survived"]}
+        for field, entry in samples.items():
+            row["l2_" + field] = entry["l2"] if entry else None
+        if not sample["survived"]:
+            spans[len(rows)] = Span("l2_" + group.fields[0], "slowdown", "ended early: " + (sample["diagnosis"] or "no diagnosis given"))
+        rows.append(row)
+    times = [row["seconds"] for row in rows if row["seconds"] and row["survived"]]
+    for row in rows:
+        row["slowdown"] = row["seconds"] / min(times) if times and row["seconds"] and row["survived"] else None
+    columns = [Column("scheme", "scheme")]
+    columns += [Column("l2_" + field, f"L2 {field}", "scientific") for field in group.fields]
+    columns += [Column("seconds", "seconds", "significant"), Column("slowdown", "× fastest", "order"),
+                Column("throughput", "particle-steps/s", "scientific"), Column("pair_evaluations", "pair evaluations", "scientific"),
+                Column("iterations_per_step", "solver iterations per step", "significant"),
+                Column("solver_iterations", "solver iterations", "integer", shown=False),
+                Column("bytes_per_particle", "bytes per particle", "integer"),
+                Column("energy_error", "energy error", "scientific"), Column("maximum_speed_error", "max speed error", "scientific"),
+                  Column("minimum_spacing", "closest pair", "significant", "dx"),
+                Column("survived", "survived", "flag", shown=False)]
+    columns = [column for column in columns if not column.shown or column.key in ("scheme", "seconds")
+               or any(row.get(column.key) is not None for row in rows)]
+    shown = {column.key for column in columns if column.shown}
+    spans = {index: Span(span.first, span.last, span.text) for index, span in spans.items() if {span.first, span.last} <= shown}
+    return Table(names.unique(group.label, "schemes"), f"the schemes side by side at n = {numbers.integer(n)}",
+                 columns, rows, spans=spans, context=group.label)
+
+
+def front_table(names, front):
+    rows = [dict(row, verdict="on the front" if row["on_front"] else "off the front") for row in front["rows"]]
+    cost = {"seconds": "run time", "pair_evaluations": "pair evaluations"}.get(front["cost"], front["cost"])
+    return Table(names.unique(front["group"], front["field"], front["cost"], "front"),
+                 f"front of {front['field']} error against {cost}",
+                 [Column("scheme", "scheme"), Column("verdict", "front"), Column("on_front", "on_front", shown=False),
+                  Column("slower_by", "costs ×", "significant"), Column("at_error", "at error", "scientific"),
+                  Column("than", "compared with")], rows, context=front["group"])
+
+
+def claims_table(names, group):
+    """What publications say of this case, and what our runs say."""
+    if not group.claims:
+        return None
+    rows = [dict(claim, verdict="agrees" if claim["agrees"] else "DISAGREES") for claim in group.claims]
+    return Table(names.unique(group.label, "claims"), "published claims and our findings",
+                 [Column("id", "claim"), Column("text", "what"), Column("published", "published"), Column("ours", "ours"),
+                  Column("verdict", "verdict"), Column("source", "source")], rows, style="prose", context=group.label)
+
+
+def runs_table(names, group):
+    """Every run of a group: how it went and what it weighed."""
+    work = {}
+    for study in group.studies:
+        for sample in study["samples"]:
+            work.setdefault((study["scheme"], sample["n"]), sample)
+    rows, spans = [], {}
+    for run in group.runs:
+        sample = work.get((run["scheme"], run["n"]), {})
+        if not run["survived"]:
+            spans[len(rows)] = Span("bytes_per_particle", "minimum_spacing", "ended early: " + (run["diagnosis"] or "no diagnosis given"))
+        rows.append({**{key: run.get(key) for key in ("scheme", "n", "seed", "end_time", "setup_seconds", "bytes_per_particle",
+                                                      "energy_error", "maximum_speed_error", "minimum_spacing",
+                                                      "survived", "diagnosis")},
+                     "solver_iterations": sample.get("solver_iterations"),
+                     "stepping_seconds": sum(stage["seconds"] or 0 for stage in run["stages"]) or None})
+    if not rows:
+        return None
+    return Table(names.unique(group.label, "runs"), "every run",
+                 [Column("scheme", "scheme"), Column("n", "n", "integer"), Column("seed", "seed", "integer"),
+                  Column("end_time", "end time", "significant", "s"), Column("setup_seconds", "set-up", "significant", "s"),
+                  Column("stepping_seconds", "stages", "significant", "s"),
+                  Column("bytes_per_particle", "bytes per particle", "integer"),
+                  Column("solver_iterations", "solver iterations", "integer"),
+                  Column("energy_error", "energy error", "scientific"), Column("maximum_speed_error", "max speed error", "scientific"),
+                  Column("minimum_spacing", "closest pair", "significant", "dx"),
+                  Column("survived", "survived", "flag", shown=False), Column("diagnosis", "diagnosis", shown=False)], rows, spans=spans,
+                 context=group.label)
+
+
+def stages_table(names, group, scheme, run):
+    total = sum(stage["seconds"] or 0 for stage in run["stages"])
+    rows = [dict(stage, share=(stage["seconds"] or 0) / total if total else None) for stage in run["stages"]]
+    return Table(names.unique(group.label, scheme, "stages"), f"active stages of {scheme} at n = {numbers.integer(run['n'])}",
+                 [Column("name", "stage"), Column("seconds", "seconds", "significant"), Column("share", "share", "percent", "%"),
+                  Column("pair_evaluations", "pair evaluations", "scientific")], rows, bars="share", context=group.label)
+
+
+def fields_table(names, group, scheme, run):
+    rows = list(run["fields"])
+    notes = [] if run["bytes_per_particle"] is None else [f"In all {numbers.integer(run['bytes_per_particle'])} bytes per particle."]
+    return Table(names.unique(group.label, scheme, "fields"), f"fields allocated by {scheme}",
+                 [Column("name", "field"), Column("bytes_per_particle", "bytes per particle", "integer"), Column("asked_by", "asked for by")],
+                 rows, notes, context=group.label)
+
+
+def flat(settings, prefix=""):
+    """Settings as name -> printed value; an object within becomes dotted names."""
+    for key, value in sorted(settings.items()):
+        if isinstance(value, dict):
+            yield from flat(value, f"{prefix}{key}.")
+        else:
+            yield prefix + key, numbers.general(value)
+
+
+def settings_table(names, group, runs):
+    """Every resolved setting, one column a scheme, taken from the runs shown in detail."""
+    columns = {scheme: dict(flat(run["settings"])) for scheme, run in runs.items()}
+    keys = sorted({key for settings in columns.values() for key in settings})
+    if not keys:
+        return None
+    # A setting that all share is printed once; the page can then show the differences at a glance.
+    keys.sort(key=lambda key: (len({settings.get(key) for settings in columns.values()}) == 1, key))
+    rows = [{"name": key, **{"scheme:" + scheme: settings.get(key) for scheme, settings in columns.items()}} for key in keys]
+    return Table(names.unique(group.label, "settings"), "resolved settings, those that differ first",
+                 [Column("name", "setting")] + [Column("scheme:" + scheme, scheme) for scheme in columns], rows, style="prose",
+                 context=group.label)
+
+
+def provenance_table(names, results):
+    """What made the numbers, one column of values a result file."""
+    keys = [("file", "file"), ("command", "command"), ("version", "sphvv"), ("revision", "revision"), ("tree", "source tree"),
+            ("compiler", "compiler"), ("flags", "flags"), ("build_type", "build type"), ("cpu", "processor"), ("threads", "threads"),
+            ("libraries", "libraries"), ("started", "started (UTC)"), ("seconds", "took [s]")]
+    rows = []
+    for key, title in keys:
+        values = [provenance_value(result, key) for result in results]
+        if any(values):
+            rows.append({"name": title, **{f"file:{index}": value for index, value in enumerate(values)}})
+    columns = [Column(f"file:{index}", result["file"]) for index, result in enumerate(results)]
+    return Table(names.unique("provenance"), "What made the numbers", [Column("name", "what")] + columns, rows[1:], style="prose")
+
+
+def provenance_value(result, key):
+    provenance = result["provenance"]
+    if key in ("file", "command"):
+        return result[key]
+    if key == "tree":
+        return "clean" if provenance["tree_clean"] else "MODIFIED: differs from the revision"
+    if key == "libraries":
+        return ", ".join(f"{name} {numbers.general(version)}" for name, version in sorted(provenance["libraries"].items()))
+    if key == "seconds":
+        return "" if provenance["seconds"] is None else numbers.significant(provenance["seconds"])
+    return "" if provenance[key] is None else numbers.general(provenance[key])
+
+
+def waivers_table(names, waived):
+    rows = [{"group": study["group"], "scheme": study["scheme"], "field": study["field"], "verdict": study["fit"]["verdict"],
+             "waiver": study["fit"]["waiver"]} for study in waived]
+    return Table(names.unique("waivers"), "Verdicts that a study accepts against its own demand", [Column("group", "case and settings"), Column("scheme", "scheme"),
+                 Column("field", "field"), Column("verdict", "verdict"), Column("waiver", "reason of the waiver")], rows, style="cards")
+
+
+# ------------------------------------------------------------------------------------------------------ the page
+
+def short_revision(provenance):
+    revision = provenance["revision"]
+    return (revision[:12] if len(revision) > 12 else revision or "unknown") + ("" if provenance["tree_clean"] else " (modified)")
+
+
+def stamp_of(results):
+    """What stands small on every figure: the revisions whose numbers it shows."""
+    labels = findings.unique(f"sphvv {result['provenance']['version']}, revision {short_revision(result['provenance'])}"
+                             for result in results)
+    return "; ".join(labels[:2]) + ("; …" if len(labels) > 2 else "")
+
+
+class Builder:
+    """Collects what the template shows, and every table and picture that becomes a file."""
+
+    def __init__(self, results):
+        self.results = results
+        self.groups = findings.in_groups(results)
+        self.looks = figures.looks(findings.all_schemes(results))
+        self.table_names, self.figure_names = Names(), Names()
+        self.tables, self.pictures = [], []
+
+    def keep(self, table):
+        if table is not None:
+            self.tables.append(table)
+        return table
+
+    def draw(self, picture):
+        if picture is not None:
+            self.pictures.append(picture)
+        return picture
+
+    def name_studies(self):
+        """Gives each study its anchor, and marks those that only their tier tells apart."""
+        anchors = Names()
+        for group in self.groups:
+            group.anchor = anchors.unique("group-" + group.label)
+            for study in group.studies:
+                study["tier_matters"] = bool(study["tier"]) and len(group.cell(study["scheme"], study["field"])) > 1
+                study["anchor"] = anchors.unique("study", group.label, study["scheme"], study["field"])
+
+    def group_view(self, group):
+        """One chapter of the page."""
+        case = self.results["cases"].get(group.case)
+        detailed = {scheme: self.detailed_run(group, scheme) for scheme in group.schemes}
+        detailed = {scheme: run for scheme, run in detailed.items() if run}
+        stamp = stamp_of(group.results())
+        return {
+            "label": group.label, "anchor": group.anchor, "case": case, "group": group,
+            "parameters": self.keep(parameters_table(self.table_names, group, case)),
+            "comparison": self.keep(comparison_table(self.table_names, group)),
+            "convergence": [picture for field in group.fields if (picture := self.draw(figures.convergence(
+                self.figure_names.unique(group.label, field, "convergence"), group.label, field, group.of_field(field),
+                self.looks, stamp)))],
+            "schemes": [self.scheme_view(group, scheme, detailed.get(scheme)) for scheme in group.schemes],
+            "fronts": [self.front_view(group, front) for front in group.fronts],
+            "claims": self.keep(claims_table(self.table_names, group)) if group.claims else None,
+            "runs": self.keep(runs_table(self.table_names, group)),
+            "settings": self.keep(settings_table(self.table_names, group, detailed)),
+        }
+
+    def scheme_view(self, group, scheme, run):
+        return {"name": scheme, "studies": [self.study_view(study) for study in group.of_scheme(scheme)], "run": run,
+                "stages": self.keep(stages_table(self.table_names, group, scheme, run)) if run and run["stages"] else None,
+                "fields": self.keep(fields_table(self.table_names, group, scheme, run)) if run and run["fields"] else None}
+
+    def study_view(self, study):
+        return {"study": study, "anchor": study["anchor"], "table": self.keep(errors_table(self.table_names, study)),
+                "status": findings.status(study), "fit_line": findings.fit_line(study)}
+
+    def front_view(self, group, front):
+        """A front with its plot and its table. With several result files, each front says whose it is."""
+        relative = any(sample["relative"] for study in group.of_field(front["field"]) for sample in study["samples"])
+        name = self.figure_names.unique(group.label, front["field"], "error-against-" + front["cost"])
+        return {"front": front, "plot": self.draw(figures.cost_plot(name, front, relative, self.looks, stamp_of([front["result"]]))),
+                "table": self.keep(front_table(self.table_names, front)),
+                "file": front["result"]["file"] if len(self.results["files"]) > 1 else ""}
+
+    @staticmethod
+    def detailed_run(group, scheme):
+        """The run whose stages are shown: the finest that survived, else the finest."""
+        runs = [run for run in group.runs if run["scheme"] == scheme]
+        return max(runs, key=lambda run: (run["survived"], run["n"]), default=None)
+
+    def matrix_view(self):
+        """Schemes across; for each group its fields down."""
+        schemes = findings.unique(study["scheme"] for study in self.results["studies"])
+        rows = [{"group": group, "fields": [{"name": field, "cells": [[
+            {"study": study, "status": findings.status(study), "note": findings.matrix_note(study)}
+            for study in group.cell(scheme, field)] for scheme in schemes]} for field in group.fields]} for group in self.groups]
+        return {"schemes": schemes, "rows": rows}
+
+    def view(self):
+        """Everything the template needs."""
+        self.name_studies()
+        found = findings.findings(self.groups)
+        waived = findings.waivers(self.groups)
+        cases = findings.unique(group.case for group in self.groups)
+        overview = {"table": self.keep(matrix_table(self.table_names, self.groups)), "matrix": self.matrix_view(),
+                    "findings": found, "provenance": self.keep(provenance_table(self.table_names, self.results["files"])),
+                    "waivers": self.keep(waivers_table(self.table_names, waived)) if waived else None}
+        return {"title": "Verification of " + (listed(cases) if len(cases) <= 3 else f"{len(cases)} cases"), "summary": findings.summary(self.groups, found),
+                "stamp": stamp_of(self.results["files"]), "files": self.results["files"], **overview,
+                "groups": [self.group_view(group) for group in self.groups],
+                "statuses": findings.STATUSES, "glossary": findings.GLOSSARY, "norms": findings.NORMS}
+
+
+def listed(words):
+    return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
+
+
+def render(view):
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, undefined=jinja2.StrictUndefined,
+                                     trim_blocks=True, lstrip_blocks=True)
+    environment.filters["as_html"] = lambda table: Markup(table.to_html())
+    environment.filters["as_svg"] = lambda picture: Markup(picture.svg)
+    environment.filters["integer"] = numbers.integer
+    environment.filters["general"] = numbers.general
+    with open(os.path.join(HERE, "page.css"), encoding="utf-8") as stream:
+        style = Markup(stream.read())
+    return environment.get_template("page.html.j2").render(style=style, **view)
+
+
+def build_report(results):
+    """All files of the report of merged results."""
+    builder = Builder(results)
+    files = {"index.html": render(builder.view())}
+    for table in builder.tables:
+        files[f"tables/{table.name}.csv"] = table.to_csv()
+        files[f"tables/{table.name}.md"] = table.to_markdown()
+        files[f"tables/{table.name}.tex"] = table.to_latex()
+    for picture in builder.pictures:
+        files[f"figures/{picture.name}.svg"] = '<?xml version="1.0" encoding="UTF-8"?>\n' + picture.svg
+    return Report(files, findings.counts(builder.groups))

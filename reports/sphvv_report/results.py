@@ -1,0 +1,321 @@
+"""Result files (reports/FORMAT.md): read an HDF5 file into a plain tree of dicts and lists, check it, merge several.
+
+Every failure is a ResultError whose text is one sentence naming the file and what is wrong with it.
+"""
+
+import math
+import multiprocessing
+import os
+import re
+import resource
+
+import h5py
+import numpy
+
+FORMAT = "sphvv-results"
+FORMAT_VERSION = 1
+DEEPEST = 32  # levels of groups; a file that nests deeper is damaged or made to hang its readers
+
+# The members a report stands on. A trailing "?" marks one that may be missing (JSON null is "no member").
+# A list holds the schema of its entries; "number" and "text" entries of a table may be null.
+PARAMETER = {"name": "text", "value?": "any", "unit?": "text", "summary?": "text"}
+CASE = {"name": "text", "summary?": "text", "equations?": "text", "source?": "text", "reference?": "text", "dimension?": "number",
+        "reference_length?": "number", "domain?": "text", "parameters?": [PARAMETER]}
+SAMPLE = {"n": "number", "h": "number", "dx": "number", "particles": "number", "dt": "number", "steps": "number",
+          "l1": "number", "l2": "number", "linf": "number", "l1_abs": "number", "l2_abs": "number", "linf_abs": "number",
+          "relative": "flag", "l2_spread": "number", "seeds": "number", "seconds": "number", "seconds_spread": "number",
+          "repeats": "number", "cpu_seconds": "number", "pair_evaluations": "number", "solver_iterations": "number",
+          "matrix_entries": "number", "particle_steps": "number", "survived": "flag", "diagnosis": "text"}
+EXPECTED = {"low?": "number", "high?": "number", "text?": "text", "source?": "text", "fate?": "text"}
+FIT = {"norm?": "text", "order?": "number", "ci95?": "number", "verdict": "text", "reason?": "text", "waiver?": "text",
+       "order_l1?": "numbers", "order_l2?": "numbers", "order_linf?": "numbers"}
+STUDY = {"case": "text", "group": "text", "scheme": "text", "field": "text", "tier?": "text", "settings?": "object",
+         "expected?": EXPECTED, "fit": FIT, "samples": [SAMPLE]}
+STAGE = {"name": "text", "seconds": "number", "pair_evaluations": "number"}
+RUN_FIELD = {"name": "text", "bytes_per_particle": "number", "asked_by": "text"}
+RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?": "number", "survived": "flag",
+       "diagnosis?": "text", "end_time?": "number", "setup_seconds?": "number", "bytes_per_particle?": "number",
+       "stages": [STAGE], "fields": [RUN_FIELD], "settings?": "object", "energy_error?": "number",
+       "minimum_spacing?": "number", "maximum_speed_error?": "number"}
+CURVE = {"scheme": "text", "n": "numbers", "error": "numbers", "cost": "numbers"}
+FRONT_ROW = {"scheme": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
+FRONT = {"group": "text", "field": "text", "norm": "text", "cost": "text", "curves": [CURVE], "rows": [FRONT_ROW]}
+CLAIM = {"group": "text", "id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "agrees": "flag"}
+PROVENANCE = {"version": "text", "revision": "text", "tree_clean": "flag", "compiler?": "text", "flags?": "text",
+              "build_type?": "text", "cpu?": "text", "threads?": "number", "libraries?": "object", "started?": "text",
+              "seconds?": "number"}
+RESULT = {"format": "text", "format_version": "number", "command": "text", "provenance": PROVENANCE,
+          "cases": [CASE], "studies": [STUDY], "runs": [RUN], "fronts": [FRONT], "claims?": [CLAIM]}
+VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", "NONE")
+
+
+class ResultError(Exception):
+    """A result file that cannot be used; the text is one sentence for the user."""
+
+
+# ---------------------------------------------------------------------------------------------------- reading
+
+CONTROL_CHARACTERS = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff]")
+
+
+def clean_text(value):
+    """Text that XML can carry: bytes decoded, lone surrogates and control characters removed."""
+    if isinstance(value, bytes):
+        value = value.decode("utf-8", "replace")
+    return CONTROL_CHARACTERS.sub("", str(value).encode("utf-8", "replace").decode("utf-8"))
+
+
+def scalar(value):
+    """A plain Python value; NaN is null."""
+    if isinstance(value, numpy.generic):
+        value = value.item()
+    if isinstance(value, (str, bytes)):
+        return clean_text(value)
+    if isinstance(value, float) and math.isnan(value):
+        return None
+    return value
+
+
+def entries(dataset):
+    """The entries of a one-dimensional dataset as plain values."""
+    return [scalar(value) for value in numpy.atleast_1d(dataset[()])]
+
+
+def read_table(group, flags, depth):
+    """A list of flat objects, stored as one dataset a column."""
+    columns = {clean_text(name): entries(dataset) for name, dataset in members(group, depth)}
+    for name in flags & columns.keys():
+        columns[name] = [bool(value) for value in columns[name]]
+    if len({len(column) for column in columns.values()}) > 1:
+        raise ValueError(f"the columns of {group.name} differ in length")
+    return [dict(zip(columns, row)) for row in zip(*columns.values())]
+
+
+def members(group, depth):
+    """Name and object of each member. Links out of the file are refused: a result file is one file."""
+    if depth > DEEPEST:
+        raise ValueError(f"it nests deeper than {DEEPEST} levels")
+    for name in sorted(group):
+        if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+            raise ValueError(f"{group.name} holds a link instead of a value: {name}")
+        yield name, group[name]
+
+
+def read_group(group, depth=0):
+    """One group as the tree it stands for: an object or a list."""
+    attributes = dict(group.attrs)
+    flags = {clean_text(name) for name in numpy.atleast_1d(attributes.pop("_booleans", []))}
+    kind = attributes.pop("_list", None)
+    kind = clean_text(kind) if kind is not None else None
+    if kind == "empty":
+        return []
+    if kind == "items":
+        return [read_group(child, depth + 1) for _, child in members(group, depth)]
+    if kind == "table":
+        return read_table(group, flags, depth)
+    if kind is not None:
+        raise ValueError(f"{group.name} is a list of unknown kind '{kind}'")
+    tree = {}
+    for name, value in attributes.items():
+        value = scalar(value)
+        tree[clean_text(name)] = bool(value) if name in flags else value
+    for name, child in members(group, depth):
+        tree[clean_text(name)] = read_group(child, depth + 1) if isinstance(child, h5py.Group) else entries(child)
+    return {name: value for name, value in tree.items() if value is not None}
+
+
+def refuse_unreadable(path):
+    """Says in words why a file cannot be one of ours, before the HDF5 library says it in its own."""
+    if not os.path.exists(path):
+        raise ResultError(f"{path}: no such file")
+    if not os.path.isfile(path):
+        raise ResultError(f"{path}: not a file, but a result file (.h5) is needed")
+    if not os.access(path, os.R_OK):
+        raise ResultError(f"{path}: no permission to read it")
+    if os.path.getsize(path) == 0:
+        raise ResultError(f"{path}: the file is empty, not a result file")
+    if not h5py.is_hdf5(path):
+        raise ResultError(f"{path}: not an HDF5 file, so not a result file of sphvv")
+
+
+def refuse_foreign(path, attributes):
+    """Refuses another format and a newer version before looking at anything else."""
+    if clean_text(scalar(attributes.get("format", ""))) != FORMAT:
+        raise ResultError(f"{path}: an HDF5 file, but not a result file of sphvv (its member 'format' is not \"{FORMAT}\")")
+    version = scalar(attributes.get("format_version", 0))
+    if not isinstance(version, (int, float)) or isinstance(version, bool) or version < 1:
+        raise ResultError(f"{path}: its format_version is not a version that ever was (this report reads 1 to {FORMAT_VERSION})")
+    if version > FORMAT_VERSION:
+        raise ResultError(f"{path}: written by a newer sphvv (format version {version}, this report reads up to "
+                          f"{FORMAT_VERSION}); use the report of that version")
+
+
+def read_tree(path):
+    """The whole file as a tree. Raises ResultError."""
+    try:
+        with h5py.File(path, "r") as stream:
+            refuse_foreign(path, stream.attrs)
+            return read_group(stream)
+    except ResultError:
+        raise
+    except Exception as error:  # h5py raises OSError, RuntimeError, KeyError, ValueError, ... on damage
+        detail = clean_text(str(error)).strip("'\"").splitlines()
+        what = "truncated" if "truncated" in str(error) else "damaged"
+        raise ResultError(f"{path}: the file is {what} ({detail[0] if detail else type(error).__name__})") from None
+
+
+def send_tree(path, pipe):
+    """Reads the file in a process of its own and sends (tree, None) or (None, message)."""
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    try:
+        pipe.send((read_tree(path), None))
+    except ResultError as error:
+        pipe.send((None, str(error)))
+
+
+def read_tree_apart(path):
+    """The whole file as a tree, read in a child process: on a damaged file the HDF5 library may crash the process that reads."""
+    context = multiprocessing.get_context("fork")
+    receiver, sender = context.Pipe(duplex=False)
+    child = context.Process(target=send_tree, args=(path, sender), daemon=True)
+    child.start()
+    sender.close()
+    try:
+        tree, message = receiver.recv()
+    except EOFError:
+        raise ResultError(f"{path}: the file is damaged (the HDF5 library could not survive reading it)") from None
+    finally:
+        receiver.close()
+        child.join()
+    if message is not None:
+        raise ResultError(message)
+    return tree
+
+
+# --------------------------------------------------------------------------------------------------- checking
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def is_kind(value, kind):
+    """Whether a non-null value is of the kind the schema asks for."""
+    return {"any": True, "text": isinstance(value, str), "number": is_number(value), "flag": isinstance(value, bool),
+            "object": isinstance(value, dict),
+            "numbers": isinstance(value, list) and all(v is None or is_number(v) for v in value)}[kind]
+
+
+KIND_NAMES = {"text": "a text", "number": "a number", "flag": "a boolean", "object": "an object", "numbers": "an array of numbers"}
+
+
+def check_entry(value, kind, path):
+    """Checks one entry of a table, where null is allowed; returns it with null in one form only."""
+    if kind == "number" and value == "":
+        return None  # a column that is null throughout has lost its kind in the file
+    if kind == "text" and value is None:
+        return ""
+    if value is not None and not is_kind(value, kind):
+        raise ValueError(f"{path} is not {KIND_NAMES[kind]}")
+    return value
+
+
+def check_object(tree, schema, path):
+    """Checks an object against its schema; `path` is where it stands, for the message.
+
+    Members that may be missing are filled in (None for a number, "" for a text, {} or []), so that nobody downstream has to ask.
+    """
+    if not isinstance(tree, dict):
+        raise ValueError(f"{path or 'the root'} is not an object")
+    for key, kind in schema.items():
+        name = key.rstrip("?")
+        where = f"{path}.{name}" if path else name
+        optional = key.endswith("?")
+        if name not in tree and not optional:
+            raise ValueError(f"{where} is missing")
+        if tree.get(name) is None:
+            tree[name] = [] if isinstance(kind, list) else {} if isinstance(kind, dict) or kind == "object" else None
+        if isinstance(kind, list):
+            check_list(tree[name], kind[0], where)
+        elif isinstance(kind, dict):
+            check_object(tree[name], kind, where)
+        else:
+            tree[name] = check_entry(tree[name], kind, where)
+
+
+def check_list(trees, schema, path):
+    if not isinstance(trees, list):
+        raise ValueError(f"{path} is not a list")
+    for index, tree in enumerate(trees):
+        check_object(tree, schema, f"{path}[{index}]")
+
+
+def check_study(study, path):
+    """What the schema cannot say: known verdicts, rungs that say which they are, as many pairwise orders as rungs."""
+    fit = study["fit"]
+    if fit["verdict"] not in VERDICTS:
+        raise ValueError(f"{path}.fit.verdict is '{fit['verdict']}', not one of {', '.join(VERDICTS)}")
+    for index, sample in enumerate(study["samples"]):
+        for name in ("n", "h"):
+            if sample[name] is None:
+                raise ValueError(f"{path}.samples[{index}].{name} is null")
+    for name in ("order_l1", "order_l2", "order_linf"):
+        if fit[name] and len(fit[name]) != len(study["samples"]):
+            raise ValueError(f"{path}.fit.{name} has {len(fit[name])} entries for {len(study['samples'])} rungs")
+
+
+def check_curve(curve, path):
+    if not len(curve["n"]) == len(curve["error"]) == len(curve["cost"]):
+        raise ValueError(f"{path}: n, error and cost differ in length")
+
+
+def check_result(tree):
+    """Checks the tree of a file; ValueError names the first member that is missing or wrong."""
+    check_object(tree, RESULT, "")
+    for index, study in enumerate(tree["studies"]):
+        check_study(study, f"studies[{index}]")
+    for index, front in enumerate(tree["fronts"]):
+        for number, curve in enumerate(front["curves"]):
+            check_curve(curve, f"fronts[{index}].curves[{number}]")
+    if not tree["studies"]:
+        raise ValueError("it holds no study")
+
+
+def read_result(path):
+    """Reads and checks one result file. Raises ResultError. The tree gains `file`, the file's own name."""
+    refuse_unreadable(path)
+    tree = read_tree_apart(path)
+    try:
+        check_result(tree)
+    except ValueError as error:
+        raise ResultError(f"{path}: not a complete result file: {error}") from None
+    tree["file"] = clean_text(os.path.basename(path))
+    return tree
+
+
+# ---------------------------------------------------------------------------------------------------- merging
+
+def study_key(study):
+    return study["case"], study["group"], study["scheme"], study["field"], study["tier"]
+
+
+def merge(results):
+    """Several result files as one: {"files", "cases", "studies", "runs", "fronts", "claims"}.
+
+    A study that stands in two files is refused: which of the two a reader sees must not depend on the order of the
+    arguments. Each study, run, front and claim remembers its file. Fronts stay apart, since a front only ranks the schemes
+    that one file holds.
+    """
+    merged = {"files": results, "cases": {}, "studies": [], "runs": [], "fronts": [], "claims": []}
+    holder = {}
+    for result in results:
+        for case in result["cases"]:
+            merged["cases"].setdefault(case["name"], case)
+        for study in result["studies"]:
+            key = study_key(study)
+            if key in holder:
+                raise ResultError(f"{result['file']}: the study {', '.join(filter(None, key[1:]))} is already in "
+                                  f"{holder[key]}; give each study once")
+            holder[key] = result["file"]
+        for kind in ("studies", "runs", "fronts", "claims"):
+            merged[kind] += [dict(entry, result=result) for entry in result[kind] or []]
+    return merged

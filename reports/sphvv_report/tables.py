@@ -1,0 +1,232 @@
+"""A table as data, and its four forms: HTML for the page, CSV (full precision), Markdown and LaTeX (booktabs)."""
+
+import csv
+import html
+import io
+import re
+from dataclasses import dataclass, field
+
+from . import numbers
+
+FORMATS = {"scientific": numbers.scientific, "order": numbers.order, "significant": numbers.significant,
+           "integer": numbers.integer, "general": numbers.general}
+
+
+@dataclass
+class Column:
+    """One column: the key of its values in a row, its head with unit, and how its values are printed.
+
+    kind: text, flag, integer, scientific, order, significant, general, or aligned (same decimals down the column).
+    latex: head in LaTeX where it differs. shown: False for columns that only the CSV carries.
+    """
+    key: str
+    title: str
+    kind: str = "text"
+    unit: str = ""
+    latex: str = ""
+    shown: bool = True
+
+    @property
+    def numeric(self):
+        return self.kind not in ("text", "flag", "general")
+
+
+@dataclass
+class Span:
+    """A remark in one row, in place of the cells from column `first` to column `last`."""
+    first: str
+    last: str
+    text: str
+
+
+@dataclass
+class Table:
+    """Rows are dicts of plain values. `notes` are lines that belong below the table in every form.
+
+    context: what the caption has to add where the table stands alone; on the page the chapter says it.
+    """
+    name: str
+    caption: str
+    columns: list
+    rows: list
+    notes: list = field(default_factory=list)
+    spans: dict = field(default_factory=dict)  # row number -> Span
+    bars: str = ""  # key of a column whose values (0 to 1) the page also draws as a bar
+    style: str = ""
+    context: str = ""
+
+    @property
+    def full_caption(self):
+        return f"{self.context}: {self.caption}" if self.context else self.caption
+
+    def shown_columns(self):
+        return [column for column in self.columns if column.shown]
+
+    def text(self, column, row):
+        """The canonical text of one cell."""
+        value = row.get(column.key)
+        if numbers.is_missing(value):
+            return numbers.MISSING
+        if column.kind == "flag":
+            return "yes" if value else "no"
+        if column.kind == "text" or isinstance(value, str):
+            return str(value)
+        if column.kind == "percent":
+            return f"{100 * value:.1f}"
+        if column.kind == "aligned":
+            return numbers.aligned([entry.get(column.key) for entry in self.rows])(value)
+        return FORMATS[column.kind](value)
+
+    def to_csv(self):
+        """All columns, at full precision, headed by the stable names of FORMAT.md; null is an empty cell."""
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow([column.key for column in self.columns])
+        for row in self.rows:
+            writer.writerow([csv_value(row.get(column.key)) for column in self.columns])
+        return stream.getvalue()
+
+    def to_markdown(self):
+        columns = self.shown_columns()
+        lines = [f"**{markdown_text(self.full_caption)}**", "",
+                 "| " + " | ".join(markdown_text(head(column)) for column in columns) + " |",
+                 "|" + "|".join("---:" if column.numeric else ":---" for column in columns) + "|"]
+        for row in self.rows:
+            lines.append("| " + " | ".join(markdown_text(self.text(column, row)) for column in columns) + " |")
+        for note in self.all_notes():
+            lines += ["", markdown_text(note)]
+        return "\n".join(lines) + "\n"
+
+    def to_latex(self):
+        """A `table` float that needs \\usepackage{booktabs} and a UTF-8 LaTeX."""
+        columns = self.shown_columns()
+        lines = ["% needs \\usepackage{booktabs}", "\\begin{table}[htbp]", "\\centering\\footnotesize\\setlength{\\tabcolsep}{3pt}",
+                 f"\\caption{{{latex_text(self.full_caption)}}}", f"\\label{{tab:{self.name}}}",
+                 "\\begin{tabular}{" + "".join("r" if column.numeric else "l" for column in columns) + "}", "\\toprule",
+                 " & ".join(latex_head(column) for column in columns) + " \\\\", "\\midrule"]
+        for row in self.rows:
+            lines.append(" & ".join(latex_cell(self.text(column, row)) for column in columns) + " \\\\")
+        lines += ["\\bottomrule", "\\end{tabular}"]
+        for note in self.all_notes():
+            lines += ["", "\\smallskip\\parbox{\\linewidth}{\\raggedright " + latex_text(note) + "}"]
+        return "\n".join(lines + ["\\end{table}"]) + "\n"
+
+    def all_notes(self):
+        """Remarks of single rows, which only the page sets inside the table, and then the notes."""
+        first = self.shown_columns()[0]
+        spans = [f"{first.title} = {self.text(first, self.rows[number])}: {span.text}" for number, span in sorted(self.spans.items())]
+        return spans + list(self.notes)
+
+    def to_html(self):
+        """The table in a box that scrolls by itself; notes are left to the page."""
+        columns = self.shown_columns()
+        heads = "".join(f'<th scope="col"{css_class(column)}>{html_head(column)}</th>' for column in columns)
+        rows = "\n".join(self.html_row(number, row, columns) for number, row in enumerate(self.rows))
+        caption = html.escape(self.caption[:1].upper() + self.caption[1:])
+        style = f" {self.style}" if self.style else ""
+        return (f'<div class="scroll" role="region" tabindex="0" aria-label="{html.escape(self.full_caption)}">\n<table class="data{style}">\n'
+                f"<caption>{caption}</caption>\n<thead><tr>{heads}</tr></thead>\n<tbody>\n{rows}\n</tbody>\n</table>\n</div>")
+
+    def html_row(self, number, row, columns):
+        span = self.spans.get(number)
+        cells = []
+        position = 0
+        while position < len(columns):
+            column = columns[position]
+            if span and column.key == span.first:
+                last = next(index for index, other in enumerate(columns) if other.key == span.last)
+                cells.append(f'<td class="remark" colspan="{last - position + 1}"><div>{html.escape(span.text)}</div></td>')
+                position = last + 1
+                continue
+            cells.append(self.html_cell(column, row, position == 0))
+            position += 1
+        return "<tr>" + "".join(cells) + "</tr>"
+
+    def html_cell(self, column, row, is_first):
+        text = html.escape(numbers.for_page(self.text(column, row)) if column.kind != "text" else self.text(column, row))
+        tag = 'th scope="row"' if is_first else "td"
+        bar = ""
+        if column.key == self.bars and row.get(column.key) is not None:
+            bar = f' style="--share:{max(0.0, min(1.0, row[column.key])):.4f}"'
+        label = f' data-label="{html.escape(column.title)}"' if self.style == "cards" else ""
+        return f"<{tag}{css_class(column, bool(bar))}{bar}{label}>{text}</{tag.split()[0]}>"
+
+
+def css_class(column, has_bar=False):
+    names = (["number"] if column.numeric else []) + (["bar"] if has_bar else [])
+    return f' class="{" ".join(names)}"' if names else ""
+
+
+def head(column):
+    return f"{column.title} [{column.unit}]" if column.unit else column.title
+
+
+def html_head(column):
+    unit = f' <span class="unit">[{html.escape(column.unit)}]</span>' if column.unit else ""
+    return html.escape(column.title) + unit
+
+
+def latex_head(column):
+    title = column.latex or latex_text(column.title)
+    return f"{title} [{latex_text(column.unit)}]" if column.unit else title
+
+
+def latex_cell(text):
+    return "--" if text == numbers.MISSING else numbers.for_latex(text) if numbers.NUMBER.match(text) else latex_text(text)
+
+
+def csv_value(value):
+    """Text that reads back to the same value; booleans as in the result file."""
+    if numbers.is_missing(value):
+        return ""
+    if isinstance(value, bool):
+        return str(int(value))
+    return repr(value) if isinstance(value, float) else str(value)
+
+
+def markdown_text(text):
+    """Text that can neither break a Markdown table nor smuggle HTML into it."""
+    text = " ".join(str(text).split())
+    return html.escape(text, quote=False).replace("\\", "\\\\").replace("|", "\\|").replace("`", "\\`")
+
+
+LATEX = {"\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
+         "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}",
+         "…": r"\ldots{}", "–": "--", "—": "---", "\u2212": "$-$", "\u202f": r"\,", "\u00a0": "~", "\u2009": r"\,", "±": r"$\pm$",
+         "×": r"$\times$", "·": r"$\cdot$", "∞": r"$\infty$", "≤": r"$\le$", "≥": r"$\ge$", "≈": r"$\approx$", "≠": r"$\ne$",
+         "∝": r"$\propto$", "→": r"$\to$", "←": r"$\leftarrow$", "∇": r"$\nabla$", "∂": r"$\partial$", "∈": r"$\in$", "√": r"$\surd$",
+         "∑": r"$\sum$", "²": r"$^2$", "³": r"$^3$", "⁻": r"$^-$", "⁰": r"$^0$", "¹": r"$^1$", "⁴": r"$^4$", "⁵": r"$^5$", "⁶": r"$^6$",
+         "⁷": r"$^7$", "⁸": r"$^8$", "⁹": r"$^9$", "₀": r"$_0$", "₁": r"$_1$", "₂": r"$_2$", "₃": r"$_3$", "°": r"$^\circ$", "§": r"\S{}",
+         "µ": r"$\mu$", "“": "``", "”": "''", "‘": "`", "’": "'", "\u2011": "-", "½": r"$\frac12$"}
+LATEX.update({letter: f"${name}$" for letter, name in zip(
+    "αβγδεζηθικλμνξπρστυφχψωΓΔΘΛΞΠΣΦΨΩϕ",
+    [r"\alpha", r"\beta", r"\gamma", r"\delta", r"\varepsilon", r"\zeta", r"\eta", r"\theta", r"\iota", r"\kappa", r"\lambda",
+     r"\mu", r"\nu", r"\xi", r"\pi", r"\rho", r"\sigma", r"\tau", r"\upsilon", r"\varphi", r"\chi", r"\psi", r"\omega",
+     r"\Gamma", r"\Delta", r"\Theta", r"\Lambda", r"\Xi", r"\Pi", r"\Sigma", r"\Phi", r"\Psi", r"\Omega", r"\phi"])})
+
+
+def latex_text(text):
+    """Any text in LaTeX: specials escaped, the signs of our trade in mathematics, what LaTeX does not know as its code point."""
+    return "".join(LATEX.get(letter) or (letter if ord(letter) < 0x180 else f"[U+{ord(letter):04X}]")
+                   for letter in " ".join(str(text).split()))
+
+
+def slug(text):
+    """A name for files: letters, digits, '_', '.' and '-' only."""
+    return re.sub(r"[^A-Za-z0-9_.]+", "-", text).strip("-.")[:60] or "unnamed"
+
+
+class Names:
+    """Gives out file names, each once: a second `errors` becomes `errors-2`."""
+
+    def __init__(self):
+        self.taken = set()
+
+    def unique(self, *parts):
+        wanted = "__".join(slug(part) for part in parts)
+        name, number = wanted, 1
+        while name.lower() in self.taken:  # some file systems do not tell the cases of letters apart
+            number += 1
+            name = f"{wanted}-{number}"
+        self.taken.add(name.lower())
+        return name

@@ -1,0 +1,490 @@
+"""The report as a whole: what it shows, what it must never do, and the files it leaves."""
+
+import contextlib
+import csv
+import html.parser
+import io
+import json
+import os
+import re
+import tempfile
+import unittest
+import xml.dom.minidom
+
+import synthetic
+from sphvv_report import findings, numbers, output
+from sphvv_report.__main__ import main
+from sphvv_report.tables import Column, Names, Table, latex_text, markdown_text
+
+VOID = {"meta", "link", "br", "img", "input", "hr"}
+HOSTILE = '<script>alert("1")</script> & 50% of $x_1$ {#~^\\} | `c`'
+
+
+class Page(html.parser.HTMLParser):
+    """What the tests ask of a page: its tags and attributes, its text, and that elements nest."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.elements, self.text, self.open, self.faults = [], [], [], []
+        self.feed(text)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        self.elements.append((tag, dict(attributes)))
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.faults.append(f"</{tag}> at {self.getpos()}")
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] != "style":
+            self.text.append(data)
+
+    def all_text(self):
+        return " ".join(" ".join(self.text).split())
+
+
+def run(*arguments):
+    """The command; returns (exit status, standard output, standard error)."""
+    out, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+        status = main(list(arguments))
+    return status, out.getvalue(), error.getvalue()
+
+
+def all_files(folder):
+    found = {}
+    for place, _, names in os.walk(folder):
+        for name in names:
+            path = os.path.join(place, name)
+            with open(path, "rb") as stream:
+                found[os.path.relpath(path, folder)] = stream.read()
+    return found
+
+
+class WithFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def path(self, *parts):
+        return os.path.join(self.folder, *parts)
+
+    def report(self, tree, name="out"):
+        source = synthetic.write(self.path("results.h5"), tree)
+        status, _, error = run(source, "--out", self.path(name), "--quiet")
+        self.assertEqual((status, error), (0, ""))
+        return all_files(self.path(name))
+
+
+class Content(unittest.TestCase):
+    """One report of a tree with every verdict in it, asked many questions."""
+
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as folder:
+            source = synthetic.write(os.path.join(folder, "results.h5"), synthetic.realistic())
+            cls.status, cls.printed, cls.errors = run(source, "--out", os.path.join(folder, "new", "out"))
+            cls.files = all_files(os.path.join(folder, "new", "out"))
+            assert run(source, "--out", os.path.join(folder, "again"), "--quiet") == (0, "", "")
+            cls.files_again = all_files(os.path.join(folder, "again"))
+        cls.source = cls.files["index.html"].decode("utf-8")
+        cls.page = Page(cls.source)
+        cls.text = cls.page.all_text()
+
+    def test_says_where_the_page_is(self):
+        self.assertEqual((self.status, self.errors), (0, ""))
+        self.assertTrue(self.printed.endswith("out/index.html\n"))
+
+    def test_every_verdict_is_a_word(self):
+        for word in ("PASS", "FAIL", "INCONCLUSIVE", "WAIVED", "ENDED EARLY", "no verdict"):
+            self.assertRegex(self.source, rf'<span class="chip [a-z-]+"><span aria-hidden="true">.</span> {word}</span>')
+
+    def test_findings_are_sorted_and_give_reasons(self):
+        listed = self.source[self.source.index('<ol class="findings">'):self.source.index('id="waivers"')]
+        order = re.findall(r'<li class="([a-z-]+)">', listed)
+        self.assertEqual(order, ["fail", "lost", "inconclusive", "waived", "lost-expected"])
+        for reason in ("the sound speed of 10 U limits the pressure", "residuals show a floor", "carries acoustic noise",
+                       "n = 40: minimum spacing 0.12 dx below 0.2 dx at step 120", "as expected"):
+            self.assertIn(reason, listed)
+
+    def test_waiver_keeps_the_verdict_visible(self):
+        section = self.source[self.source.index('<section id="waivers">'):self.source.index('<section id="provenance">')]
+        self.assertIn("FAIL", section)
+        self.assertIn("see issue 3", section)
+        self.assertIn("The verdict is FAIL.", self.text)
+
+    def test_summary_counts(self):
+        self.assertIn("8 order verdicts (5 PASS, 1 FAIL, 1 INCONCLUSIVE, 1 WAIVED)", self.text)
+        self.assertIn("2 ladders ended early, 1 of them as expected", self.text)
+
+    def test_fit_lines(self):
+        self.assertRegex(self.text, r"fit: order 1\.\d\d ± 0\.\d\d \(expected 1\.0…2\.2, Xu 2009, §4\.3\.3\)")
+        self.assertIn("(expected ≥ 0.9, ", self.text)
+        self.assertIn("2 rungs show errors, but bear no order verdict", self.text)
+
+    def test_ended_rung_shows_its_diagnosis_in_place_of_errors(self):
+        self.assertRegex(self.source, r'<td class="remark" colspan="6"><div>ended early: minimum spacing')
+
+    def test_group_settings_override_defaults(self):
+        self.assertIn("re,1000.0,1,", self.files["tables/taylor_green-re-1000__parameters.csv"].decode())
+
+    def test_groups_sort_as_numbers(self):
+        places = [self.source.index(f">taylor_green re={re}</h2>") for re in (10, 100, 1000)]
+        self.assertEqual(places, sorted(places))
+
+    def test_no_request_and_no_script(self):
+        for tag, attributes in self.page.elements:
+            self.assertNotIn(tag, ("script", "link", "img", "iframe", "object", "embed", "base"))
+            for name, value in attributes.items():
+                self.assertFalse(name.startswith("on"), name)
+                if name in ("src", "href", "xlink:href", "action", "data", "srcset"):
+                    self.assertRegex(value, r"^(#|tables/|figures/)", f"{tag} {name}")
+        self.assertNotIn("@import", self.source)
+        self.assertEqual([], re.findall(r"url\((?!#)", self.source))
+        outside = set(re.findall(r"https?://[^\s\"'<>]+", self.source))
+        self.assertLessEqual(outside, {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"})
+
+    def test_well_formed(self):
+        self.assertEqual((self.page.faults, self.page.open), ([], []))
+        ids = [attributes["id"] for _, attributes in self.page.elements if "id" in attributes]
+        self.assertEqual(len(ids), len(set(ids)), "ids on the page are unique")
+        for _, attributes in self.page.elements:
+            link = attributes.get("href") or attributes.get("xlink:href") or ""
+            if link.startswith("#"):
+                self.assertIn(link[1:], ids)
+            elif link:
+                self.assertIn(link, self.files)
+
+    def test_headings_in_order(self):
+        levels = [int(tag[1]) for tag, _ in self.page.elements if re.fullmatch("h[1-6]", tag)]
+        self.assertEqual(levels[0], 1)
+        self.assertEqual(levels.count(1), 1)
+        for before, after in zip(levels, levels[1:]):
+            self.assertLessEqual(after, before + 1)
+
+    def test_tables_have_captions_and_scopes(self):
+        tables = sum(tag == "table" for tag, _ in self.page.elements)
+        self.assertEqual(tables, sum(tag == "caption" for tag, _ in self.page.elements))
+        self.assertTrue(all("scope" in attributes for tag, attributes in self.page.elements if tag == "th"))
+
+    def test_every_table_on_the_page_is_on_disk_in_three_forms(self):
+        names = {name[7:-4] for name in self.files if name.startswith("tables/") and name.endswith(".csv")}
+        for name in names:
+            for kind in ("csv", "md", "tex"):
+                self.assertIn(f"tables/{name}.{kind}", self.files)
+                self.assertIn(f'href="tables/{name}.{kind}"', self.source)
+        self.assertEqual(len(names), sum(tag == "table" for tag, _ in self.page.elements))
+
+    def test_every_picture_is_on_the_page_and_on_disk(self):
+        pictures = {name: content.decode("utf-8") for name, content in self.files.items() if name.startswith("figures/")}
+        self.assertEqual(len(pictures), sum(tag == "figure" for tag, _ in self.page.elements))
+        self.assertEqual(len(pictures), 24)
+        for name, svg in pictures.items():
+            with self.subTest(name):
+                self.assertIn(svg.split("\n", 1)[1], self.source)
+                document = xml.dom.minidom.parseString(svg)
+                self.assertEqual(document.documentElement.getAttribute("role"), "img")
+                self.assertIn("<title", svg)
+                self.assertIn("<desc", svg)
+                self.assertIn("revision 4f1c2d7e9ab0", svg)
+                self.assertNotIn("DOCTYPE", svg)
+                self.assertLess(len(svg), 40_000)
+
+    def test_figures_keep_their_text(self):
+        svg = self.files["figures/taylor_green-re-100__velocity__convergence.svg"].decode()
+        self.assertRegex(svg, r"<text[^>]*>wcsph: order 1\.\d\d ± 0\.\d\d, expected 1\.0…2\.2, PASS</text>")
+
+    def test_csv_reads_back_to_the_values(self):
+        study = synthetic.realistic()["studies"][2]  # the one that ends early
+        content = self.files["tables/taylor_green-re-100__isph_df__velocity__errors.csv"].decode("utf-8")
+        rows = list(csv.DictReader(io.StringIO(content)))
+        self.assertEqual(len(rows), len(study["samples"]))
+        for row, sample in zip(rows, study["samples"]):
+            for key, value in sample.items():
+                if isinstance(value, bool):
+                    self.assertEqual(row[key], str(int(value)))
+                elif isinstance(value, (int, float)):
+                    self.assertEqual(float(row[key]), value)
+                else:
+                    self.assertEqual(row[key], value or "")
+
+    def test_two_runs_give_the_same_bytes(self):
+        self.assertEqual(self.files, self.files_again)
+
+    def test_glossary_explains_every_word(self):
+        explained = {word for word, _ in findings.GLOSSARY}
+        self.assertEqual(explained, {word for word, _ in findings.STATUSES.values()})
+
+    def test_manifest_lists_what_is_there(self):
+        listed = set(self.files["manifest.txt"].decode().split())
+        self.assertEqual(listed, set(self.files) - {"manifest.txt"})
+
+
+class Hostile(WithFolder):
+    def test_strings_cannot_leave_their_place(self):
+        tree = synthetic.small()
+        for study in tree["studies"]:
+            study.update(group=HOSTILE, case=HOSTILE, settings={HOSTILE.replace("/", ""): HOSTILE}, tier=HOSTILE)
+            study["fit"]["reason"] = HOSTILE
+            study["expected"].update(text=HOSTILE, source=HOSTILE)
+            for sample in study["samples"]:
+                if not sample["survived"]:
+                    sample["diagnosis"] = HOSTILE
+        for index, study in enumerate(tree["studies"]):
+            study["scheme"] = f"{HOSTILE} {index // 2}"
+        tree["runs"] = [dict(run, group=HOSTILE, scheme=HOSTILE + " 0", diagnosis=HOSTILE) for run in tree["runs"][:4]]
+        tree["fronts"] = [dict(front, group=HOSTILE) for front in tree["fronts"][:4]]
+        tree["cases"] = [dict(case, name=HOSTILE, equations=HOSTILE, domain=HOSTILE) for case in tree["cases"]]
+        tree["command"] = tree["provenance"]["revision"] = HOSTILE
+        files = self.report(tree)
+        page = Page(files["index.html"].decode("utf-8"))
+        self.assertEqual((page.faults, page.open), ([], []))
+        self.assertNotIn("script", {tag for tag, _ in page.elements})
+        self.assertIn('<script>alert("1")</script>', page.all_text())
+        for name, content in files.items():
+            text = content.decode("utf-8")
+            if name.endswith(".svg"):
+                document = xml.dom.minidom.parseString(text)
+                self.assertEqual(len(document.getElementsByTagName("script")), 0)
+            elif name.endswith(".md"):
+                self.assertNotIn("<script>", text)
+            elif name.endswith(".tex"):
+                self.assertNotIn("<", text)
+                self.assertNotRegex(text, r"(?<!\\)\$x_1")
+
+    def test_names_of_files_stay_in_their_folder(self):
+        tree = synthetic.small()
+        for study in tree["studies"]:
+            study["group"] = study["group"].replace("taylor_green", "../../" + "tg" * 80)
+        files = self.report(tree)
+        self.assertTrue(all(re.fullmatch(r"(tables|figures)/[\w.-]+|index.html|manifest.txt", name) for name in files))
+        self.assertEqual(sorted(os.listdir(self.folder)), ["out", "results.h5"])
+
+    def test_numbers_that_no_axis_can_show(self):
+        tree = synthetic.small()
+        for value, sample in zip((0.0, float("inf"), -1.0, None), tree["studies"][0]["samples"]):
+            sample["l2"] = value
+        tree["studies"][1]["fit"].update(order=1e6, ci95=float("inf"))
+        tree["fronts"][0]["curves"][0]["error"] = [0.0] * len(tree["fronts"][0]["curves"][0]["error"])
+        self.report(tree)
+
+
+class Odd(WithFolder):
+    """Trees at the edges of the format."""
+
+    def test_bare_study(self):
+        """Only what must be there: no case, no run, no front, one rung, nothing expected."""
+        tree = synthetic.small()
+        study = tree["studies"][0]
+        study.update(samples=study["samples"][:1], fit={"verdict": "NONE"})
+        for name in ("expected", "settings", "tier"):
+            del study[name]
+        tree.update(studies=[study], runs=[], fronts=[], cases=[])
+        text = Page(self.report(tree)["index.html"].decode()).all_text()
+        self.assertIn("1 rung shows errors, but bears no order verdict", text)
+        self.assertIn("None: no verdict failed", text)
+        self.assertIn("Waivers None.", text)
+
+    def test_every_rung_ended_early(self):
+        tree = synthetic.small()
+        for study in tree["studies"]:
+            study["fit"] = {"verdict": "NONE"}
+            study["samples"] = [dict(sample, survived=False, diagnosis="not finite", l1=None, l2=None, linf=None)
+                                for sample in study["samples"]]
+        tree["fronts"] = []
+        files = self.report(tree)
+        self.assertFalse(any(name.startswith("figures/") for name in files))
+        self.assertIn("every run ended early", files["index.html"].decode())
+
+    def test_same_study_in_two_tiers(self):
+        tree = synthetic.small()
+        tree["studies"].append(dict(tree["studies"][0], tier="full"))
+        text = Page(self.report(tree)["index.html"].decode()).all_text()
+        self.assertIn("velocity (full tier)", text)
+
+    def test_seeds_show_their_spread(self):
+        tree = synthetic.small()
+        for sample in tree["studies"][0]["samples"]:
+            sample.update(seeds=5, l2_spread=0.031)
+        self.assertIn("seed spread", self.report(tree)["index.html"].decode())
+
+    def test_modified_tree_is_said_on_page_and_figures(self):
+        tree = synthetic.small()
+        tree["provenance"]["tree_clean"] = False
+        files = self.report(tree)
+        self.assertIn("MODIFIED", files["index.html"].decode())
+        self.assertTrue(all("(modified)" in files[name].decode() for name in files if name.startswith("figures/")))
+
+    def test_expected_end_that_did_not_come_is_a_finding(self):
+        tree = synthetic.small()
+        tree["studies"][0]["expected"]["fate"] = "ends_early"
+        self.assertIn("survived, though the study expects it to end early", self.report(tree)["index.html"].decode())
+
+    def test_waived_pass_is_printed(self):
+        tree = synthetic.small()
+        tree["studies"][0]["fit"]["waiver"] = "left over from last year"
+        text = Page(self.report(tree)["index.html"].decode()).all_text()
+        self.assertIn("Waiver (not needed).", text)
+
+
+class Failing(WithFolder):
+    """Exit status 2, one sentence, nothing left behind."""
+
+    def setUp(self):
+        super().setUp()
+        self.source = synthetic.write(self.path("results.h5"), synthetic.small())
+
+    def assert_fails(self, source, out, *words):
+        status, printed, error = run(source, "--out", out)
+        self.assertEqual((status, printed), (2, ""))
+        self.assertEqual(len(error.splitlines()), 1, error)
+        for word in words:
+            self.assertIn(word, error)
+
+    def test_bad_file_leaves_no_folder(self):
+        with open(self.path("text.h5"), "w", encoding="utf-8") as stream:
+            stream.write("no result")
+        self.assert_fails(self.path("text.h5"), self.path("out"), "text.h5", "not an HDF5 file")
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_output_below_a_file(self):
+        self.assert_fails(self.source, self.path("results.h5", "sub", "out"), "cannot write", "results.h5")
+
+    def test_output_is_a_file(self):
+        self.assert_fails(self.source, self.source, "cannot write")
+
+    def test_folder_in_the_way_leaves_everything_as_it_was(self):
+        os.makedirs(self.path("out", "index.html"))
+        self.assert_fails(self.source, self.path("out"), "in the way")
+        self.assertEqual(os.listdir(self.path("out")), ["index.html"])
+
+    def test_full_disk_leaves_nothing(self):
+        original = output.os.fsync
+        self.addCleanup(setattr, output.os, "fsync", original)
+        calls = []
+
+        def full(_descriptor):
+            calls.append(1)
+            if len(calls) == 7:
+                raise OSError(28, "No space left on device")
+        output.os.fsync = full
+        self.assert_fails(self.source, self.path("new", "out"), "no space left")
+        self.assertEqual(os.listdir(self.folder), ["results.h5"])
+
+    def test_wrong_option(self):
+        with self.assertRaises(SystemExit) as caught, contextlib.redirect_stderr(io.StringIO()):
+            main([self.source])
+        self.assertEqual(caught.exception.code, 2)
+
+
+class Rewriting(WithFolder):
+    def test_a_new_report_replaces_the_old_and_nothing_else(self):
+        tree = synthetic.realistic()
+        before = self.report(tree)
+        for place in ("tables/mine.csv", "notes.txt"):
+            with open(self.path("out", place), "w", encoding="utf-8") as stream:
+                stream.write("the user's own")
+        tree["studies"] = [study for study in tree["studies"] if study["case"] == "taylor_green"]
+        after = self.report(tree)
+        self.assertIn("tables/abc_flow__runs.csv", before)
+        self.assertNotIn("tables/abc_flow__runs.csv", after)
+        self.assertEqual(after["tables/mine.csv"], b"the user's own")
+        self.assertEqual(after["notes.txt"], b"the user's own")
+        self.assertFalse([name for name in os.listdir(self.path("out")) if name.startswith(".")])
+
+    def test_a_forged_manifest_removes_nothing_elsewhere(self):
+        self.assertFalse(output.is_ours("../results.h5"))
+        self.assertFalse(output.is_ours("tables/../../results.h5"))
+        self.assertFalse(output.is_ours("/etc/passwd"))
+        self.assertTrue(output.is_ours("tables/verdicts.csv"))
+
+    def test_json_summary(self):
+        source = synthetic.write(self.path("results.h5"), synthetic.realistic())
+        status, printed, _ = run(source, "--out", self.path("out"), "--json", "-")
+        summary = json.loads(printed)
+        self.assertEqual(status, 0)
+        self.assertEqual(summary["verdicts"]["fail"], 1)
+        self.assertTrue(os.path.exists(summary["index"]))
+
+    def test_several_files_in_one_report(self):
+        first, second = synthetic.realistic(), synthetic.realistic()
+        first["studies"] = [study for study in first["studies"] if study["case"] == "taylor_green"]
+        second["studies"] = [study for study in second["studies"] if study["case"] == "abc_flow"]
+        second["provenance"]["revision"] = "beef" * 10
+        paths = [synthetic.write(self.path(name), tree) for name, tree in (("a.h5", first), ("b.h5", second))]
+        self.assertEqual(run(*paths, "--out", self.path("out"), "--quiet")[0], 0)
+        files = all_files(self.path("out"))
+        self.assertIn("revision beefbeefbeef", files["figures/abc_flow__velocity__convergence.svg"].decode())
+        self.assertNotIn("beef", files["figures/taylor_green-re-10__velocity__convergence.svg"].decode())
+        provenance = files["tables/provenance.md"].decode()
+        self.assertIn("a.h5", provenance)
+        self.assertIn("b.h5", provenance)
+
+
+class Pieces(unittest.TestCase):
+    def test_numbers(self):
+        self.assertEqual(numbers.scientific(0.000123456), "1.23e-04")
+        self.assertEqual(numbers.significant(0.05123), "0.0512")
+        self.assertEqual(numbers.significant(99.96), "100.0")
+        self.assertEqual(numbers.significant(1234.5), "1234")
+        self.assertEqual(numbers.order(-0.001), "0.00")
+        self.assertEqual(numbers.for_page("-1.23e-04"), "\u22121.23e\u221204")
+        self.assertEqual(numbers.for_page("25600"), "25\u202f600")
+        self.assertEqual(numbers.for_latex("-1.23e-04"), r"$-1.23\times10^{-4}$")
+        self.assertEqual([numbers.aligned([0.065, 0.008125])(value) for value in (0.065, 0.008125)], ["0.06500", "0.00813"])
+
+    def test_bands(self):
+        self.assertEqual(numbers.band(0.9, None), "≥ 0.9")
+        self.assertEqual(numbers.band(None, 2), "≤ 2.0")
+        self.assertEqual(numbers.band(-1.25, -1.0), "\u22121.25…\u22121.0")
+        self.assertEqual(numbers.band(None, None), "")
+
+    def test_escapes(self):
+        self.assertEqual(latex_text("50% of a_b & ∇p ≤ 漢"), r"50\% of a\_b \& $\nabla$p $\le$ [U+6F22]")
+        self.assertEqual(markdown_text("a|b\n<i>"), r"a\|b &lt;i&gt;")
+
+    def test_names_are_given_once(self):
+        names = Names()
+        self.assertEqual([names.unique("a b", "c"), names.unique("a=b", "c"), names.unique("A-b", "C"), names.unique("//")],
+                         ["a-b__c", "a-b__c-2", "A-b__C-3", "unnamed"])
+
+    def test_markdown_and_latex_of_a_table(self):
+        table = Table("t", "errors", [Column("n", "n", "integer"), Column("l2", "L2", "scientific", "m/s", "$L_2$")],
+                      [{"n": 20, "l2": 0.0123}, {"n": 40, "l2": None}], ["fit: none"], context="case")
+        self.assertEqual(table.to_markdown(), "**case: errors**\n\n| n | L2 [m/s] |\n|---:|---:|\n| 20 | 1.23e-02 |\n| 40 | – |\n\nfit: none\n")
+        latex = table.to_latex()
+        self.assertIn("n & $L_2$ [m/s] \\\\", latex)
+        self.assertIn("$20$ & $1.23\\times10^{-2}$ \\\\", latex)
+        self.assertIn("$40$ & -- \\\\", latex)
+        self.assertEqual(latex.count("{tabular}"), 2)
+
+    def test_colours_of_chips_are_legible(self):
+        """Text on its ground at 4.5 : 1 or better, read from the style sheet itself."""
+        here = os.path.dirname(findings.__file__)
+        with open(os.path.join(here, "page.css"), encoding="utf-8") as stream:
+            chips = re.findall(r"\.chip[^{]*\{ background: (#\w+);[^}]*?[^-]color: (#\w+);", stream.read())
+        self.assertEqual(len(chips), 6)
+        for ground, text in chips:
+            self.assertGreaterEqual(contrast(ground, text), 4.5, (ground, text))
+
+
+def contrast(one, other):
+    """Contrast ratio of two colours (WCAG 2.1)."""
+    def luminance(colour):
+        digits = colour[1:] if len(colour) == 7 else "".join(2 * digit for digit in colour[1:])
+        parts = [int(digits[i:i + 2], 16) / 255 for i in (0, 2, 4)]
+        linear = [part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,199 @@
+"""Reading: what was written comes back; what is not a result file is refused with one sentence."""
+
+import math
+import os
+import signal
+import tempfile
+import unittest
+
+import h5py
+
+import synthetic
+from sphvv_report import results
+from sphvv_report.results import ResultError, merge, read_result
+
+
+class InFolder(unittest.TestCase):
+    """A temporary folder and a small valid file in it."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.path = synthetic.write(os.path.join(self.folder, "results.h5"), synthetic.small())
+
+    def file(self, name, content):
+        path = os.path.join(self.folder, name)
+        with open(path, "wb") as stream:
+            stream.write(content)
+        return path
+
+    def assert_refused(self, path, *words):
+        with self.assertRaises(ResultError) as caught:
+            read_result(path)
+        message = str(caught.exception)
+        self.assertIn(os.path.basename(path), message)
+        self.assertEqual(len(message.splitlines()), 1, message)
+        for word in words:
+            self.assertIn(word, message)
+
+
+class Reading(InFolder):
+    def test_what_was_written_comes_back(self):
+        written = synthetic.realistic()
+        read = read_result(synthetic.write(self.path, written))
+        self.assertEqual(read["command"], written["command"])
+        self.assertIs(read["provenance"]["tree_clean"], True)
+        self.assertEqual(read["provenance"]["libraries"], written["provenance"]["libraries"])
+        self.assertEqual(len(read["studies"]), len(written["studies"]))
+        for ours, theirs in zip(read["studies"], written["studies"]):
+            self.assertEqual(ours["samples"], theirs["samples"])
+            expected_orders = [None if math.isnan(order) else order for order in theirs["fit"]["order_l2"]]
+            self.assertEqual(ours["fit"]["order_l2"], expected_orders)
+            self.assertEqual(ours["fit"]["verdict"], theirs["fit"]["verdict"])
+            self.assertEqual(ours["fit"]["waiver"], theirs["fit"].get("waiver", ""))
+        self.assertEqual(read["runs"][0]["stages"], written["runs"][0]["stages"])
+        self.assertIs(read["runs"][0]["settings"]["shifting"], False)
+
+    def test_null_members_are_filled_in(self):
+        study = read_result(self.path)["studies"][0]
+        self.assertEqual((study["expected"]["fate"], study["fit"]["waiver"]), ("", ""))
+
+    def test_null_columns_keep_their_kind(self):
+        """A column that is null throughout has no kind in the file: NaN and "" both mean null."""
+        tree = synthetic.small()
+        for row in tree["fronts"][0]["rows"]:
+            row.update(slower_by=None, at_error=None, than=None)
+        for sample in tree["studies"][0]["samples"]:
+            sample["l2_spread"] = ""
+        read = read_result(synthetic.write(self.path, tree))
+        self.assertEqual([row["than"] for row in read["fronts"][0]["rows"]], [""] * len(read["fronts"][0]["rows"]))
+        self.assertTrue(all(sample["l2_spread"] is None for sample in read["studies"][0]["samples"]))
+
+    def test_unknown_members_are_let_pass(self):
+        tree = synthetic.small()
+        tree["seeded_faults"] = [{"name": "eta"}]
+        tree["studies"][0]["profile"] = {"x": [1.0, 2.0]}
+        read_result(synthetic.write(self.path, tree))
+
+    def test_control_characters_do_not_survive(self):
+        tree = synthetic.small()
+        tree["command"] = "a\x1b[31mb"
+        self.assertEqual(read_result(synthetic.write(self.path, tree))["command"], "a[31mb")
+
+
+class Refusing(InFolder):
+    def test_missing_file(self):
+        self.assert_refused(os.path.join(self.folder, "absent.h5"), "no such file")
+
+    def test_folder(self):
+        self.assert_refused(self.folder, "not a file")
+
+    def test_empty_file(self):
+        self.assert_refused(self.file("empty.h5", b""), "empty")
+
+    def test_text_file_with_our_name(self):
+        self.assert_refused(self.file("text.h5", b"# Results\nall passed\n"), "not an HDF5 file")
+
+    def test_truncated_file_at_any_length(self):
+        with open(self.path, "rb") as stream:
+            content = stream.read()
+        for share in (0.01, 0.5, 0.999):
+            with self.subTest(share=share):
+                self.assert_refused(self.file("cut.h5", content[: max(16, int(share * len(content)))]))
+
+    def test_damaged_file(self):
+        """Noise in the middle is refused, or goes unnoticed in some value; it never escapes as another exception or a crash."""
+        with open(self.path, "rb") as stream:
+            content = bytearray(stream.read())
+        for start in range(600, len(content), len(content) // 12):
+            damaged = bytearray(content)
+            damaged[start:start + 64] = b"\xa5" * 64
+            try:
+                read_result(self.file("damaged.h5", bytes(damaged)))
+            except ResultError as error:
+                self.assertEqual(len(str(error).splitlines()), 1)
+
+    def test_crash_of_the_library_is_a_sentence(self):
+        original = results.read_tree
+        self.addCleanup(setattr, results, "read_tree", original)
+        results.read_tree = lambda path: os.kill(os.getpid(), signal.SIGKILL)
+        self.assert_refused(self.path, "damaged")
+
+    def test_foreign_hdf5(self):
+        path = os.path.join(self.folder, "foreign.h5")
+        with h5py.File(path, "w") as stream:
+            stream["particles"] = [1.0, 2.0]
+        self.assert_refused(path, "not a result file of sphvv")
+
+    def test_newer_version(self):
+        with h5py.File(self.path, "a") as stream:
+            stream.attrs["format_version"] = 2
+        self.assert_refused(self.path, "newer", "2")
+
+    def test_version_that_never_was(self):
+        with h5py.File(self.path, "a") as stream:
+            stream.attrs["format_version"] = 0
+        self.assert_refused(self.path, "format_version")
+
+    def test_link_out_of_the_file(self):
+        with h5py.File(self.path, "a") as stream:
+            stream["elsewhere"] = h5py.ExternalLink("/etc/other.h5", "/")
+        self.assert_refused(self.path, "link")
+
+    def test_endless_nesting(self):
+        with h5py.File(self.path, "a") as stream:
+            stream["provenance/again"] = stream["provenance"]
+        self.assert_refused(self.path, "deeper")
+
+    def refuse_changed(self, change, *words):
+        tree = synthetic.small()
+        change(tree)
+        self.assert_refused(synthetic.write(self.path, tree), *words)
+
+    def test_missing_members(self):
+        self.refuse_changed(lambda tree: tree.pop("provenance"), "provenance is missing")
+        self.refuse_changed(lambda tree: tree["studies"][2]["fit"].pop("verdict"), "studies[2].fit.verdict is missing")
+        self.refuse_changed(lambda tree: tree["runs"][0].pop("stages"), "runs[0].stages is missing")
+        self.refuse_changed(lambda tree: tree.update(studies=[]), "no study")
+
+        def drop_column(tree):
+            for sample in tree["studies"][1]["samples"]:
+                del sample["l2"]
+        self.refuse_changed(drop_column, "studies[1].samples[0].l2 is missing")
+
+    def test_members_of_the_wrong_kind(self):
+        self.refuse_changed(lambda tree: tree["studies"][0].update(scheme=7), "studies[0].scheme is not a text")
+        self.refuse_changed(lambda tree: tree["studies"][0]["fit"].update(order="two"), "studies[0].fit.order is not a number")
+        self.refuse_changed(lambda tree: tree["studies"][0]["fit"].update(verdict="GOOD"), "GOOD", "PASS")
+        self.refuse_changed(lambda tree: tree["studies"][0]["fit"].update(order_l2=[1.0]), "order_l2", "4 rungs")
+        self.refuse_changed(lambda tree: tree["studies"][0]["samples"][0].update(n=None), "samples[0].n is null")
+
+    def test_columns_of_different_length(self):
+        with h5py.File(self.path, "a") as stream:
+            del stream["studies/0000/samples/steps"]
+            stream["studies/0000/samples/steps"] = [1, 2]
+        self.assert_refused(self.path, "differ in length")
+
+
+class Merging(InFolder):
+    def test_each_study_once(self):
+        other = synthetic.write(os.path.join(self.folder, "other.h5"), synthetic.small())
+        with self.assertRaises(ResultError) as caught:
+            merge([read_result(self.path), read_result(other)])
+        for word in ("results.h5", "other.h5", "taylor_green re=100", "wcsph"):
+            self.assertIn(word, str(caught.exception))
+
+    def test_files_add_up(self):
+        tree = synthetic.small()
+        for kind in ("studies", "runs", "fronts"):
+            for entry in tree[kind]:
+                entry["group"] += " kernel=wendland_c2"
+        other = synthetic.write(os.path.join(self.folder, "other.h5"), tree)
+        merged = merge([read_result(self.path), read_result(other)])
+        self.assertEqual(len(merged["studies"]), 2 * len(tree["studies"]))
+        self.assertEqual(set(merged["cases"]), {"taylor_green", "abc_flow"})
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,1033 @@
+// Every registered scheme against what holds for any flow, and each one against the algorithm that it cites,
+// carried out with all pairs and dense matrices.
+//   solver_schemes --gtest_filter='*isph_dfs*'
+#include "sphvv/solver/schemes.hpp"
+
+#include "sphvv/solver/operators/row.hpp"
+#include "sphvv/solver/tests/scenes.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <filesystem>
+#include <map>
+
+namespace sphvv::solver {
+namespace {
+
+using namespace scenes;
+
+TEST(Schemes, AreTheFilesOfTheFolder) {
+    std::vector<std::string> stems;
+    for (const auto& entry : std::filesystem::directory_iterator(SPHVV_SOLVER_FOLDER "/schemes")) {
+        if (entry.path().extension() == ".cpp") {
+            stems.push_back(entry.path().stem().string());
+        }
+    }
+    std::ranges::sort(stems);
+    std::vector<std::string> names;
+    for (const Scheme* scheme : schemes::all()) {
+        names.emplace_back(scheme->name);
+    }
+    EXPECT_FALSE(names.empty());
+    EXPECT_EQ(names, stems);
+    EXPECT_THROW(schemes::find("isph"), UserError);
+}
+
+// Every scheme with every choice of words.
+
+struct Variant {
+    const Scheme* scheme;
+    Assignments given;
+    std::string name;
+};
+
+/// Each scheme as it is declared, and with each other choice of each of its word keys.
+std::vector<Variant> variants() {
+    std::vector<Variant> result;
+    for (const Scheme* scheme : schemes::all()) {
+        result.push_back({scheme, {}, std::string(scheme->name)});
+        for (const Key& key : scheme->keys) {
+            for (const std::string& choice : key.choices) {
+                if (choice != key.value) {
+                    result.push_back(
+                        {scheme, {{key.name, choice}}, std::string(scheme->name) + "_" + choice});
+                }
+            }
+        }
+    }
+    return result;
+}
+
+bool has_key(const Scheme& scheme, std::string_view key) {
+    return std::ranges::any_of(scheme.keys, [&](const Key& k) { return k.name == key; });
+}
+
+/// Without what by design disturbs an uneven arrangement at rest: a background pressure and shifting.
+Assignments undisturbed(const Variant& variant) {
+    Assignments given = variant.given;
+    for (const char* key : {"background_pressure", "shift_coefficient"}) {
+        if (has_key(*variant.scheme, key)) {
+            given[key] = "0";
+        }
+    }
+    return given;
+}
+
+class EveryScheme : public testing::TestWithParam<Variant> {
+protected:
+    const Variant& variant = GetParam();
+    const Scheme& scheme = *variant.scheme;
+};
+
+INSTANTIATE_TEST_SUITE_P(All, EveryScheme, testing::ValuesIn(variants()),
+                         [](const auto& test) { return test.param.name; });
+
+template <class Check>
+void in_2d_and_3d(const Check& check) {
+    {
+        SCOPED_TRACE("2-D");
+        check(std::integral_constant<int, 2>{});
+    }
+    {
+        SCOPED_TRACE("3-D");
+        check(std::integral_constant<int, 3>{});
+    }
+}
+
+TEST_P(EveryScheme, IsDeclaredInFull) {
+    EXPECT_EQ(&schemes::find(scheme.name), &scheme);
+    EXPECT_FALSE(scheme.summary.empty());
+    EXPECT_FALSE(scheme.formula.empty());
+    EXPECT_FALSE(scheme.source.empty());
+    std::vector<std::string> names;
+    for (const Key& key : scheme.keys) {
+        names.push_back(key.name);
+        EXPECT_FALSE(key.summary.empty()) << key.name;
+        EXPECT_EQ(key.unit.empty(), !key.choices.empty()) << key.name;
+        EXPECT_EQ(std::ranges::count(names, key.name), 1) << key.name << " is declared twice";
+    }
+    for (const char* common : {"kernel", "h_over_dx", "time_step"}) {
+        EXPECT_EQ(std::ranges::count(names, common), 1) << common;
+    }
+    EXPECT_NO_THROW(Settings(scheme.keys, variant.given));
+}
+
+/// All that a run computed.
+template <int Dim>
+std::map<std::string, std::vector<double>> state(const Simulation<Dim>& scene) {
+    std::map<std::string, std::vector<double>> all;
+    for (const Field& field : scene.particles.fields()) {
+        for (std::size_t component = 0; component < field.components.size(); ++component) {
+            all[field.name + std::to_string(component)] = field.components[component];
+        }
+    }
+    all["id"].assign(scene.particles.id.begin(), scene.particles.id.end());
+    all["time"] = {scene.time, scene.time_step, scene.maximum_acceleration};
+    all["work"] = {
+        static_cast<double>(scene.work.pair_evaluations), static_cast<double>(scene.work.solver_iterations),
+        static_cast<double>(scene.work.matrix_entries), static_cast<double>(scene.work.particle_steps)};
+    return all;
+}
+
+TEST_P(EveryScheme, GivesTheSameBitsOnAnyNumberOfThreads) {
+    const int threads = omp_get_max_threads();
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        const auto run = [&](int count) {
+            omp_set_num_threads(count);
+            // more than one block of rows (256) and of sums (1024)
+            Simulation<Dim> scene = flowing_scene<Dim>(scheme, variant.given, Dim == 2 ? 34 : 11, 0.1);
+            scheme.assemble(scene);
+            for (int step = 0; step < 10; ++step) {
+                advance(scene);
+            }
+            return state(scene);
+        };
+        const auto one = run(1);
+        for (const int count : {2, 3}) {
+            const auto many = run(count);
+            ASSERT_EQ(many.size(), one.size());
+            for (const auto& [name, values] : one) {
+                EXPECT_TRUE(values == many.at(name)) << name << " on " << count << " threads";
+            }
+        }
+    });
+    omp_set_num_threads(threads);
+}
+
+template <int Dim>
+std::array<double, Dim> uniform_velocity() {
+    std::array<double, Dim> u{0.3, -0.4};
+    if (Dim == 3) {
+        u[Dim - 1] = 0.5;
+    }
+    return u;
+}
+
+TEST_P(EveryScheme, CarriesAUniformFlowUnchanged) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        Simulation<Dim> scene = still_scene<Dim>(scheme, undisturbed(variant), Dim == 2 ? 12 : 9, 0.2);
+        const auto u = uniform_velocity<Dim>();
+        Points<Dim> start;
+        for (int d = 0; d < Dim; ++d) {
+            std::ranges::fill(scene.particles.velocity.components[d], u[d]);
+            start[d] = scene.particles.position.components[d];
+        }
+        scheme.assemble(scene);
+        for (int step = 0; step < 20; ++step) {
+            advance(scene);
+        }
+        const Field& pressure = *scene.particles.find("pressure");
+        for (int k = 0; k < static_cast<int>(scene.particles.size()); ++k) {
+            ASSERT_EQ(pressure[0][k], 0);
+            for (int d = 0; d < Dim; ++d) {
+                ASSERT_EQ(scene.particles.velocity[d][k], u[d]);
+                const double moved =
+                    scene.particles.position[d][k] - start[d][scene.particles.id[k]] - scene.time * u[d];
+                ASSERT_NEAR(moved, std::round(moved), 1e-13);
+            }
+        }
+    });
+}
+
+TEST_P(EveryScheme, StaysAtRest) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        // exactly where nothing pushes; to round-off on a lattice, where a background pressure pushes alike
+        // from all sides
+        for (const bool exactly : {true, false}) {
+            Simulation<Dim> scene = still_scene<Dim>(scheme, exactly ? undisturbed(variant) : variant.given,
+                                                     Dim == 2 ? 12 : 9, exactly ? 0.2 : 0);
+            Points<Dim> start;
+            for (int d = 0; d < Dim; ++d) {
+                start[d] = scene.particles.position.components[d];
+            }
+            scheme.assemble(scene);
+            for (int step = 0; step < 20; ++step) {
+                advance(scene);
+            }
+            EXPECT_LE(maximum_speed(scene), exactly ? 0 : 1e-11);
+            for (int k = 0; k < static_cast<int>(scene.particles.size()); ++k) {
+                for (int d = 0; d < Dim; ++d) {
+                    ASSERT_NEAR(scene.particles.position[d][k], start[d][scene.particles.id[k]],
+                                exactly ? 0 : 1e-12);
+                }
+            }
+        }
+    });
+}
+
+// A second observer sees the same flow: to round-off and to the tolerance of the pressure solve.
+TEST_P(EveryScheme, IsTheSameForAMovingObserver) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        Assignments given = variant.given;
+        given["time_step"] = "0.004";
+        if (has_key(scheme, "pressure_tolerance")) {
+            given["pressure_tolerance"] = "1e-13";
+        }
+        if (has_key(scheme, "shift_coefficient")) {
+            given["shift_coefficient"] = "0"; // it is scaled with the largest speed
+        }
+        const auto run = [&](const std::array<double, Dim>& observer) {
+            Simulation<Dim> scene = flowing_scene<Dim>(scheme, given, Dim == 2 ? 16 : 9);
+            for (int d = 0; d < Dim; ++d) {
+                for (double& u : scene.particles.velocity.components[d]) {
+                    u += observer[d];
+                }
+            }
+            scheme.assemble(scene);
+            for (int step = 0; step < 5; ++step) {
+                advance(scene);
+            }
+            Points<Dim> velocity;
+            for (int d = 0; d < Dim; ++d) {
+                velocity[d].resize(scene.particles.size());
+                for (std::size_t k = 0; k < scene.particles.size(); ++k) {
+                    velocity[d][scene.particles.id[k]] = scene.particles.velocity[d][k] - observer[d];
+                }
+            }
+            return velocity;
+        };
+        const Points<Dim> at_rest = run({});
+        const Points<Dim> moving = run(uniform_velocity<Dim>());
+        for (int d = 0; d < Dim; ++d) {
+            for (std::size_t i = 0; i < at_rest[d].size(); ++i) {
+                ASSERT_NEAR(moving[d][i], at_rest[d][i], 1e-10);
+            }
+        }
+    });
+}
+
+// exp(-16 pi^2 nu t) for the Taylor-Green vortices, exp(-8 pi^2 nu t) for the ABC flow; a coarse lattice gets
+// the rate to some 10 %.
+TEST_P(EveryScheme, LosesKineticEnergyAtTheViscousRate) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        Simulation<Dim> scene = flowing_scene<Dim>(scheme, variant.given, Dim == 2 ? 28 : 14);
+        scene.kinematic_viscosity = 0.02;
+        scheme.assemble(scene);
+        const double start = kinetic_energy(scene);
+        double before = start;
+        while (scene.time < 0.05) {
+            advance(scene);
+            const double energy = kinetic_energy(scene);
+            EXPECT_LT(energy, before) << "step " << scene.step;
+            before = energy;
+        }
+        const double exact = (Dim == 2 ? 16 : 8) * pi * pi * scene.kinematic_viscosity * scene.time;
+        EXPECT_NEAR(std::log(start / before) / exact, 1, 0.2);
+    });
+}
+
+TEST_P(EveryScheme, ReachesTheEndTimeExactly) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        Assignments given = variant.given;
+        given["time_step"] = "0.003";
+        Simulation<Dim> scene = flowing_scene<Dim>(scheme, given, 9);
+        scene.end_time = 0.01;
+        scheme.assemble(scene);
+        for (int step = 0; step < 4; ++step) {
+            EXPECT_LT(scene.time, scene.end_time);
+            advance(scene);
+            EXPECT_NEAR(scene.time_step, 0.0025, 1e-15);
+        }
+        EXPECT_EQ(scene.time, scene.end_time);
+        EXPECT_EQ(scene.step, 4);
+        EXPECT_EQ(scene.work.particle_steps, 4 * static_cast<std::int64_t>(scene.particles.size()));
+    });
+}
+
+TEST_P(EveryScheme, DivergesByNameWhenAVelocityIsNotANumber) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        Simulation<Dim> scene = flowing_scene<Dim>(scheme, variant.given, 9);
+        scene.particles.velocity[1][17] = not_a_number;
+        scheme.assemble(scene);
+        EXPECT_THROW(advance(scene), Diverged);
+    });
+}
+
+// What a scene carries.
+
+struct Inventory {
+    const char* scheme;
+    Assignments given;
+    std::vector<std::pair<std::string, int>> stages; ///< with sweeps over all pairs
+    std::vector<std::string> state;
+    std::vector<std::string> scratch;
+    std::array<std::size_t, 2> bytes; ///< per particle, 2-D and 3-D
+};
+
+// Bytes: 4 for the identity, 8 for every component.
+const std::array inventories{
+    Inventory{"isph_df",
+              {},
+              {{"time_step", 0},
+               {"drift", 0},
+               {"neighbours", 0},
+               {"viscosity", 2},
+               {"pressure_poisson", 2},
+               {"projection", 1}},
+              {"position", "velocity", "pressure"},
+              {"velocity_next", "renormalisation"},
+              {4 + 8 * 11, 4 + 8 * 19}},
+    Inventory{"isph_df",
+              {{"gradient", "plain"}},
+              {{"time_step", 0},
+               {"drift", 0},
+               {"neighbours", 0},
+               {"viscosity", 1},
+               {"pressure_poisson", 2},
+               {"projection", 1}},
+              {"position", "velocity", "pressure"},
+              {"velocity_next"},
+              {4 + 8 * 7, 4 + 8 * 10}},
+    Inventory{"isph_df",
+              {{"laplacian", "schwaiger"}},
+              {{"time_step", 0},
+               {"drift", 0},
+               {"neighbours", 0},
+               {"viscosity", 4},
+               {"pressure_poisson", 3},
+               {"projection", 1}},
+              {"position", "velocity", "pressure"},
+              {"velocity_next", "renormalisation"},
+              {4 + 8 * 11, 4 + 8 * 19}},
+    Inventory{"isph_dfs",
+              {},
+              {{"time_step", 0},
+               {"drift", 0},
+               {"neighbours", 0},
+               {"viscosity", 2},
+               {"pressure_poisson", 2},
+               {"projection", 1},
+               {"shifting", 4}},
+              {"position", "velocity", "pressure"},
+              {"velocity_next", "renormalisation", "shift_correction"},
+              {4 + 8 * 14, 4 + 8 * 23}},
+    Inventory{"isph_dfs",
+              {{"shift_correction", "none"}},
+              {{"time_step", 0},
+               {"drift", 0},
+               {"neighbours", 0},
+               {"viscosity", 2},
+               {"pressure_poisson", 2},
+               {"projection", 1},
+               {"shifting", 1}},
+              {"position", "velocity", "pressure"},
+              {"velocity_next", "renormalisation"},
+              {4 + 8 * 11, 4 + 8 * 19}},
+    Inventory{"wcsph",
+              {{"integrator", "explicit"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 1},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"pressure_over_squared_density", "specific_volume", "acceleration", "density_rate"},
+              {4 + 8 * 11, 4 + 8 * 14}},
+    Inventory{
+        "wcsph",
+        {{"integrator", "predictor_corrector"}},
+        {{"time_step", 0}, {"neighbours", 0}, {"predictor", 2}, {"corrector", 2}, {"equation_of_state", 0}},
+        {"position", "velocity", "pressure", "density"},
+        {"pressure_over_squared_density", "specific_volume", "acceleration", "density_rate", "step_start",
+         "predictor_displacement"},
+        {4 + 8 * 18, 4 + 8 * 24}},
+};
+
+TEST(Scene, CarriesOnlyWhatItsSchemeNeeds) {
+    for (const Inventory& inventory : inventories) {
+        SCOPED_TRACE(std::string(inventory.scheme) + " " +
+                     (inventory.given.empty() ? "" : inventory.given.begin()->second));
+        in_2d_and_3d([&](auto dimension) {
+            constexpr int Dim = dimension;
+            const Scheme& scheme = schemes::find(inventory.scheme);
+            Simulation<Dim> scene = flowing_scene<Dim>(scheme, inventory.given, 9, 0.1);
+            scheme.assemble(scene);
+            advance(scene);
+            std::vector<std::string> stages;
+            std::vector<std::string> expected_stages;
+            std::int64_t pair_evaluations = 0;
+            ASSERT_EQ(scene.stages.size(), inventory.stages.size());
+            for (std::size_t k = 0; k < inventory.stages.size(); ++k) {
+                const auto& [name, sweeps] = inventory.stages[k];
+                EXPECT_EQ(scene.stages[k].name, name);
+                EXPECT_EQ(scene.stages[k].pair_evaluations, sweeps * scene.neighbours.pairs()) << name;
+                pair_evaluations += sweeps * scene.neighbours.pairs();
+                EXPECT_GE(scene.stages[k].seconds, 0);
+            }
+            EXPECT_EQ(scene.work.pair_evaluations, pair_evaluations);
+            std::vector<std::string> state;
+            std::vector<std::string> scratch;
+            for (const Field& field : scene.particles.fields()) {
+                (field.lifetime == Lifetime::state ? state : scratch).push_back(field.name);
+            }
+            EXPECT_EQ(state, inventory.state);
+            EXPECT_EQ(scratch, inventory.scratch);
+            EXPECT_EQ(scene.particles.bytes_per_particle(), inventory.bytes[Dim - 2]);
+            const bool projection = std::string_view(inventory.scheme).starts_with("isph");
+            const std::int64_t entries =
+                scene.neighbours.pairs() + static_cast<std::int64_t>(scene.particles.size());
+            const int products =
+                scene.settings.has("laplacian") && scene.settings.word("laplacian") == "schwaiger" ? 2 : 1;
+            EXPECT_EQ(scene.work.solver_iterations > 0, projection);
+            EXPECT_EQ(scene.work.matrix_entries,
+                      projection ? entries * (1 + products * scene.work.solver_iterations) : 0);
+        });
+    }
+}
+
+TEST(Scene, NamesWhoAskedForAField) {
+    const Scheme& scheme = schemes::find("isph_dfs");
+    Simulation<2> scene = flowing_scene<2>(scheme, {}, 9);
+    scheme.assemble(scene);
+    EXPECT_EQ(scene.particles.find("velocity_next")->asked_by,
+              (std::vector<std::string>{"viscosity", "shifting"}));
+    EXPECT_EQ(scene.particles.find("pressure")->asked_by,
+              (std::vector<std::string>{"scene", "pressure_poisson"}));
+    EXPECT_EQ(scene.particles.find("no such field"), nullptr);
+}
+
+TEST(Scene, RefusesAFieldOfAnotherShape) {
+    Particles<2> particles(5);
+    Field& field = particles.field("density", 1, Lifetime::scratch, "first");
+    EXPECT_EQ(&particles.field("density", 1, Lifetime::state, "second"), &field);
+    EXPECT_EQ(field.lifetime, Lifetime::state) << "state for one is state for all";
+    particles.field("density", 1, Lifetime::scratch, "first");
+    EXPECT_EQ(field.lifetime, Lifetime::state);
+    EXPECT_EQ(field.asked_by, (std::vector<std::string>{"first", "second"}));
+    ASSERT_EQ(field.components.size(), 1);
+    EXPECT_EQ(field.components[0], std::vector<double>(5, 0.0));
+    EXPECT_THROW(particles.field("density", 2, Lifetime::scratch, "third"), std::logic_error);
+}
+
+// The cited algorithms, with all pairs and dense matrices.
+
+template <int Dim>
+struct Reference {
+    using Vectors = std::vector<Vector<Dim>>;
+
+    explicit Reference(const Simulation<Dim>& scene)
+        : box(scene.box), kernel(*scene.kernel), h(scene.smoothing_length), m(scene.particle_mass),
+          rho0(scene.density), nu(scene.kinematic_viscosity), x(scene.particles.size()), u(x.size()),
+          p(x.size()), rho(x.size(), rho0) {
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const int i = scene.particles.id[k];
+            for (int d = 0; d < Dim; ++d) {
+                x[i][d] = scene.particles.position[d][k];
+                u[i][d] = scene.particles.velocity[d][k];
+            }
+            p[i] = (*scene.particles.find("pressure"))[0][k];
+        }
+    }
+
+    /// Neighbours and gradients at some positions.
+    std::vector<std::vector<Neighbour<Dim>>> pairs_at(const Vectors& at) const {
+        Points<Dim> points;
+        for (const auto& point : at) {
+            std::array<double, Dim> coordinates;
+            std::copy(point.begin(), point.end(), coordinates.begin());
+            append<Dim>(points, coordinates);
+        }
+        return all_neighbours<Dim>(box, points, kernel, h);
+    }
+
+    static Vector<Dim> gradW(const Neighbour<Dim>& pair) {
+        return Eigen::Map<const Vector<Dim>>(pair.gradW.data());
+    }
+    static Vector<Dim> separation(const Neighbour<Dim>& pair) {
+        return Eigen::Map<const Vector<Dim>>(pair.r.data());
+    }
+    double V() const { return m / rho0; }
+
+    Matrix<Dim> L(const std::vector<Neighbour<Dim>>& row) const {
+        Matrix<Dim> moments = Matrix<Dim>::Zero();
+        for (const auto& pair : row) {
+            moments -= V() * separation(pair) * gradW(pair).transpose();
+        }
+        return moments.inverse();
+    }
+
+    /// Rows a_ij of the Laplacian, A_i at the diagonal.
+    Eigen::MatrixXd laplacian(const std::vector<std::vector<Neighbour<Dim>>>& pairs, bool schwaiger,
+                              double eta) const {
+        const int count = static_cast<int>(pairs.size());
+        Eigen::MatrixXd result = Eigen::MatrixXd::Zero(count, count);
+        for (int i = 0; i < count; ++i) {
+            const Matrix<Dim> Li = L(pairs[i]);
+            Vector<Dim> S = Vector<Dim>::Zero();
+            for (const auto& pair : pairs[i]) {
+                S += V() * gradW(pair);
+            }
+            for (const auto& pair : pairs[i]) {
+                const double r2 = pair.distance * pair.distance;
+                const double F = separation(pair).dot(gradW(pair)) / (r2 + eta * eta);
+                const double a = schwaiger ? Li.trace() / Dim * V() * (-2 * F - 2 * (Li * gradW(pair)).dot(S))
+                                           : -2 * V() * F;
+                result(i, pair.j) += a;
+                result(i, i) -= a;
+            }
+        }
+        return result;
+    }
+
+    /// What a projection scheme may be told.
+    struct Choices {
+        bool normalised;
+        bool schwaiger;
+        double eta;
+        double C;       ///< of shifting, 0 for none
+        double longest; ///< shift
+        bool corrected; ///< after shifting
+    };
+
+    /// Xu 2009 §2.2, ISPH_DF, and §2.3, ISPH_DFS, for C > 0.
+    void isph_step(double dt, const Choices& choices) {
+        const int count = static_cast<int>(x.size());
+        Vectors star(count);
+        for (int i = 0; i < count; ++i) {
+            star[i] = x[i] + dt * u[i];
+        }
+        const auto pairs = pairs_at(star);
+        const Eigen::MatrixXd lap = laplacian(pairs, choices.schwaiger, choices.eta);
+        const auto L_or_identity = [&](const std::vector<Neighbour<Dim>>& row) -> Matrix<Dim> {
+            return choices.normalised ? L(row) : Matrix<Dim>::Identity();
+        };
+        Vectors u_star = u;
+        for (int i = 0; i < count; ++i) {
+            for (int j = 0; j < count; ++j) {
+                u_star[i] += dt * nu * lap(i, j) * u[j];
+            }
+        }
+        Eigen::VectorXd b(count);
+        for (int i = 0; i < count; ++i) {
+            const Matrix<Dim> Li = L_or_identity(pairs[i]);
+            double divergence = 0;
+            for (const auto& pair : pairs[i]) {
+                divergence += V() * (u_star[pair.j] - u_star[i]).dot(Li * gradW(pair));
+            }
+            b[i] = rho0 / dt * divergence;
+        }
+        // Equations up to a constant, and the one more that the mean of p vanish.
+        Eigen::MatrixXd A = lap;
+        A.rowwise() -= A.colwise().mean().eval();
+        b.array() -= b.mean();
+        A.array() += A.norm() / count;
+        const Eigen::VectorXd solution = A.partialPivLu().solve(b);
+        Vectors u_next = u_star;
+        for (int i = 0; i < count; ++i) {
+            const Matrix<Dim> Li = L_or_identity(pairs[i]);
+            for (const auto& pair : pairs[i]) {
+                u_next[i] -= dt / rho0 * V() * (solution[pair.j] - solution[i]) * (Li * gradW(pair));
+            }
+            p[i] = solution[i];
+        }
+        for (int i = 0; i < count; ++i) {
+            x[i] += dt / 2 * (u[i] + u_next[i]);
+        }
+        u = u_next;
+        if (choices.C > 0) {
+            shift(choices.C * dt, choices.longest, choices.corrected);
+        }
+    }
+
+    void shift(double C_dt, double longest, bool corrected) {
+        const int count = static_cast<int>(x.size());
+        const auto pairs = pairs_at(x);
+        double u_max = 0;
+        for (const auto& ui : u) {
+            u_max = std::max(u_max, ui.norm());
+        }
+        Vectors dx(count);
+        Vectors u_new = u;
+        std::vector<double> p_new = p;
+        for (int i = 0; i < count; ++i) {
+            double mean_distance = 0;
+            for (const auto& pair : pairs[i]) {
+                mean_distance += pair.distance / static_cast<double>(pairs[i].size());
+            }
+            Vector<Dim> R = Vector<Dim>::Zero();
+            for (const auto& pair : pairs[i]) {
+                R += std::pow(mean_distance / pair.distance, Dim) * separation(pair) / pair.distance;
+            }
+            dx[i] = C_dt * u_max * shifting_factor<Dim> * R;
+            if (dx[i].norm() > longest) {
+                dx[i] *= longest / dx[i].norm();
+            }
+            const Matrix<Dim> Li = L(pairs[i]);
+            for (const auto& pair : pairs[i]) {
+                const double along = V() * (Li * gradW(pair)).dot(dx[i]);
+                u_new[i] += along * (u[pair.j] - u[i]);
+                p_new[i] += along * (p[pair.j] - p[i]);
+            }
+        }
+        for (int i = 0; i < count; ++i) {
+            x[i] += dx[i];
+        }
+        if (corrected) {
+            u = u_new;
+            p = p_new;
+        }
+    }
+
+    // Weakly compressible; p = B [(rho/rho0)^gamma - 1] + background.
+    double B = 0;
+    double gamma = 7;
+    double background = 0;
+
+    void set_tait(double c0, double exponent, double added) {
+        gamma = exponent;
+        B = rho0 * c0 * c0 / gamma;
+        background = added;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            rho[i] = rho0 * std::pow(p[i] / B + 1, 1 / gamma);
+        }
+        update_pressure();
+    }
+    void update_pressure() {
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            p[i] = B * (std::pow(rho[i] / rho0, gamma) - 1) + background;
+        }
+    }
+    Vectors acceleration(const std::vector<std::vector<Neighbour<Dim>>>& pairs, double eta) const {
+        Vectors a(x.size(), Vector<Dim>::Zero());
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            for (const auto& pair : pairs[i]) {
+                const int j = pair.j;
+                const double r2 = pair.distance * pair.distance;
+                a[i] -= m * (p[i] / (rho[i] * rho[i]) + p[j] / (rho[j] * rho[j])) * gradW(pair);
+                a[i] += m * 2 * rho0 * nu / (rho[i] * rho[j]) * separation(pair).dot(gradW(pair)) /
+                        (r2 + eta * eta) * (u[i] - u[j]);
+            }
+        }
+        return a;
+    }
+    std::vector<double> density_rate(const std::vector<std::vector<Neighbour<Dim>>>& pairs) const {
+        std::vector<double> rate(x.size(), 0.0);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            for (const auto& pair : pairs[i]) {
+                rate[i] += m * (u[i] - u[pair.j]).dot(gradW(pair));
+            }
+        }
+        return rate;
+    }
+    /// Lee 2008 §1.1.
+    void explicit_step(double dt, double eta) {
+        const auto pairs = pairs_at(x);
+        const Vectors a = acceleration(pairs, eta);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            u[i] += dt * a[i];
+        }
+        const auto rate = density_rate(pairs);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            rho[i] += dt * rate[i];
+            x[i] += dt * u[i];
+        }
+        update_pressure();
+    }
+    /// Issa 2005 §3.
+    void predictor_corrector_step(double dt, double eta) {
+        const Reference start = *this;
+        double step = dt / 2;
+        for (int pass = 0; pass < 2; ++pass) {
+            const auto pairs = pairs_at(x);
+            const Vectors a = acceleration(pairs, eta);
+            const auto rate = density_rate(pairs);
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                x[i] = start.x[i] + step * u[i];
+                u[i] = start.u[i] + step * a[i];
+                rho[i] = start.rho[i] + step * rate[i];
+            }
+            update_pressure();
+            step = dt;
+        }
+    }
+
+    void expect_equals(const Simulation<Dim>& scene, double tolerance) const {
+        const Field& pressure = *scene.particles.find("pressure");
+        const Field* density = scene.particles.find("density");
+        double largest = 0;
+        for (const double pi : p) {
+            largest = std::max(largest, std::abs(pi));
+        }
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            const int i = scene.particles.id[k];
+            for (int d = 0; d < Dim; ++d) {
+                const double apart = scene.particles.position[d][k] - x[i][d];
+                ASSERT_NEAR(apart, std::round(apart), tolerance * h) << "position of " << i;
+                ASSERT_NEAR(scene.particles.velocity[d][k], u[i][d], tolerance) << "velocity of " << i;
+            }
+            ASSERT_NEAR(pressure[0][k], p[i], 10 * tolerance * largest) << "pressure of " << i;
+            if (density) {
+                ASSERT_NEAR((*density)[0][k], rho[i], tolerance * rho0) << "density of " << i;
+            }
+        }
+    }
+
+    Box<Dim> box;
+    const Kernel& kernel;
+    double h, m, rho0, nu;
+    Vectors x, u;
+    std::vector<double> p, rho;
+};
+
+/// A scene whose constants are all unlike one, so that a factor left out shows.
+template <int Dim>
+Simulation<Dim> general_scene(const Scheme& scheme, const Assignments& given) {
+    Simulation<Dim> scene = flowing_scene<Dim>(scheme, given, Dim == 2 ? 10 : 8, 0.15);
+    scene.density = 3;
+    scene.particle_mass *= 3;
+    scene.kinematic_viscosity = 0.05;
+    scene.reference_speed = 1.5;
+    for (double& p : scene.particles.field("pressure", 1, Lifetime::state, "scene").components[0]) {
+        p *= 3;
+    }
+    return scene;
+}
+
+TEST(CitedAlgorithm, IsCarriedOutByTheProjectionSchemes) {
+    struct Choice {
+        const char* scheme;
+        Assignments given;
+    };
+    for (const Choice& choice :
+         {Choice{"isph_df", {}}, Choice{"isph_df", {{"gradient", "plain"}, {"eta_over_h", "0.1"}}},
+          Choice{"isph_df", {{"laplacian", "schwaiger"}}},
+          Choice{"isph_df", {{"laplacian", "schwaiger"}, {"gradient", "plain"}}},
+          Choice{"isph_df", {{"preconditioner", "jacobi"}}}, Choice{"isph_dfs", {}},
+          Choice{"isph_dfs", {{"shift_correction", "none"}, {"shift_coefficient", "0.1"}}},
+          Choice{"isph_dfs", {{"shift_limit", "0.02"}}}}) {
+        SCOPED_TRACE(choice.scheme + (choice.given.empty() ? "" : " " + choice.given.begin()->second));
+        in_2d_and_3d([&](auto dimension) {
+            constexpr int Dim = dimension;
+            const Scheme& scheme = schemes::find(choice.scheme);
+            Assignments given = choice.given;
+            given["pressure_tolerance"] = "1e-13";
+            given["kernel"] = "quintic_spline";
+            given["h_over_dx"] = "1.2";
+            Simulation<Dim> scene = general_scene<Dim>(scheme, given);
+            Reference<Dim> reference(scene);
+            scheme.assemble(scene);
+            const Settings& settings = scene.settings;
+            for (int step = 0; step < 2; ++step) {
+                advance(scene);
+                const bool shifts = settings.has("shift_coefficient");
+                reference.isph_step(
+                    scene.time_step,
+                    {.normalised = settings.word("gradient") == "normalised",
+                     .schwaiger = settings.word("laplacian") == "schwaiger",
+                     .eta = settings.number("eta_over_h") * scene.smoothing_length,
+                     .C = shifts ? settings.number("shift_coefficient") : 0,
+                     .longest = shifts ? settings.number("shift_limit") * scene.particle_spacing : 0,
+                     .corrected = shifts && settings.word("shift_correction") == "first"});
+                reference.expect_equals(scene, 1e-9);
+            }
+        });
+    }
+}
+
+TEST(CitedAlgorithm, IsCarriedOutByTheWeaklyCompressibleScheme) {
+    for (const std::string integrator : {"explicit", "predictor_corrector"}) {
+        for (const std::string background : {"0", "0.5"}) {
+            SCOPED_TRACE(integrator);
+            SCOPED_TRACE("background pressure " + background);
+            in_2d_and_3d([&](auto dimension) {
+                constexpr int Dim = dimension;
+                const Scheme& scheme = schemes::find("wcsph");
+                Simulation<Dim> scene = general_scene<Dim>(scheme, {{"integrator", integrator},
+                                                                    {"background_pressure", background},
+                                                                    {"gamma", "5"},
+                                                                    {"c0_over_u", "12"},
+                                                                    {"eta_over_h", "0.1"},
+                                                                    {"h_over_dx", "1.5"}});
+                Reference<Dim> reference(scene);
+                reference.set_tait(12 * 1.5, 5, std::stod(background) * 3 * 1.5 * 1.5);
+                scheme.assemble(scene);
+                reference.expect_equals(scene, 1e-14);
+                for (int step = 0; step < 3; ++step) {
+                    advance(scene);
+                    if (integrator == "explicit") {
+                        reference.explicit_step(scene.time_step, 0.1 * scene.smoothing_length);
+                    } else {
+                        reference.predictor_corrector_step(scene.time_step, 0.1 * scene.smoothing_length);
+                    }
+                    reference.expect_equals(scene, 1e-11);
+                }
+            });
+        }
+    }
+}
+
+// Properties of single schemes.
+
+TEST(Wcsph, ConservesMomentum) {
+    for (const std::string integrator : {"explicit", "predictor_corrector"}) {
+        in_2d_and_3d([&](auto dimension) {
+            constexpr int Dim = dimension;
+            const Scheme& scheme = schemes::find("wcsph");
+            Simulation<Dim> scene =
+                flowing_scene<Dim>(scheme, {{"integrator", integrator}}, Dim == 2 ? 16 : 9, 0.2);
+            scene.particles.velocity[0][3] += 0.5;
+            scheme.assemble(scene);
+            const auto momentum = [&](int d) {
+                return deterministic_sum(static_cast<int>(scene.particles.size()),
+                                         [&](int i) { return scene.particles.velocity[d][i]; });
+            };
+            std::array<double, Dim> start;
+            for (int d = 0; d < Dim; ++d) {
+                start[d] = momentum(d);
+            }
+            for (int step = 0; step < 20; ++step) {
+                advance(scene);
+            }
+            for (int d = 0; d < Dim; ++d) {
+                EXPECT_NEAR(momentum(d), start[d], 1e-14 * static_cast<double>(scene.particles.size()));
+            }
+        });
+    }
+}
+
+TEST(Wcsph, StartsWithTheDensityOfItsPressure) {
+    const Scheme& scheme = schemes::find("wcsph");
+    Simulation<2> scene = flowing_scene<2>(scheme, {{"background_pressure", "2"}, {"c0_over_u", "10"}}, 12);
+    const std::vector<double> given = scene.particles.find("pressure")->components[0];
+    scheme.assemble(scene);
+    const Field& pressure = *scene.particles.find("pressure");
+    const Field& density = *scene.particles.find("density");
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        EXPECT_NEAR(pressure[0][i], given[i] + 2, 1e-13);
+        EXPECT_NEAR(100. / 7 * (std::pow(density[0][i], 7) - 1), given[i], 1e-13);
+    }
+}
+
+TEST(IsphDf, MovesParticlesByTheMeanOfOldAndNewVelocity) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        const Scheme& scheme = schemes::find("isph_df");
+        Simulation<Dim> scene = flowing_scene<Dim>(scheme, {}, Dim == 2 ? 16 : 9, 0.1);
+        scheme.assemble(scene);
+        for (int step = 0; step < 5; ++step) {
+            const auto by_id = [&](const Field& field) {
+                Points<Dim> values;
+                for (int d = 0; d < Dim; ++d) {
+                    values[d].resize(scene.particles.size());
+                    for (std::size_t k = 0; k < scene.particles.size(); ++k) {
+                        values[d][scene.particles.id[k]] = field[d][k];
+                    }
+                }
+                return values;
+            };
+            const Points<Dim> r = by_id(scene.particles.position);
+            const Points<Dim> u = by_id(scene.particles.velocity);
+            advance(scene);
+            const Points<Dim> r_next = by_id(scene.particles.position);
+            const Points<Dim> u_next = by_id(scene.particles.velocity);
+            for (int d = 0; d < Dim; ++d) {
+                for (std::size_t i = 0; i < r[d].size(); ++i) {
+                    const double apart =
+                        r_next[d][i] - r[d][i] - scene.time_step / 2 * (u[d][i] + u_next[d][i]);
+                    ASSERT_NEAR(apart, std::round(apart), 1e-15);
+                    ASSERT_NE(u_next[d][i], u[d][i]);
+                }
+            }
+        }
+    });
+}
+
+TEST(IsphDfs, IsIsphDfWithoutAShift) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        const auto run = [](const char* name, const Assignments& given) {
+            const Scheme& scheme = schemes::find(name);
+            Simulation<Dim> scene = flowing_scene<Dim>(scheme, given, Dim == 2 ? 16 : 9, 0.1);
+            scheme.assemble(scene);
+            for (int step = 0; step < 8; ++step) {
+                advance(scene);
+            }
+            return state(scene);
+        };
+        const auto plain = run("isph_df", {});
+        for (const char* correction : {"first", "none"}) {
+            auto shifted = run("isph_dfs", {{"shift_coefficient", "0"}, {"shift_correction", correction}});
+            for (const auto& [name, values] : plain) {
+                if (name != "work" && !name.starts_with("velocity_next")) {
+                    EXPECT_TRUE(values == shifted.at(name)) << name;
+                }
+            }
+        }
+    });
+}
+
+TEST(IsphDfs, KeepsADisorderedArrangementMoreEven) {
+    const auto spacing = [](const char* name) {
+        const Scheme& scheme = schemes::find(name);
+        Simulation<2> scene = flowing_scene<2>(scheme, {{"time_step", "0.005"}}, 20, 0.2);
+        scheme.assemble(scene);
+        double smallest = infinity;
+        for (int step = 0; step < 40; ++step) {
+            advance(scene);
+            smallest = std::min(smallest, step < 20 ? infinity : scene.neighbours.minimum_distance());
+        }
+        return smallest;
+    };
+    EXPECT_GT(spacing("isph_dfs"), 1.1 * spacing("isph_df"));
+}
+
+// Time steps.
+
+double even(double time, double limit) {
+    return time / std::ceil(time / limit);
+}
+
+TEST(TimeStep, OfTheProjectionIsThePublishedLimit) {
+    const Scheme& scheme = schemes::find("isph_df");
+    constexpr double h = 1.3 / 16;
+    const auto step = [&](double nu, double reference_speed, double speed, Assignments given) {
+        given["h_over_dx"] = "1.3";
+        Simulation<2> scene = still_scene<2>(scheme, given, 16);
+        scene.kinematic_viscosity = nu;
+        scene.reference_speed = reference_speed;
+        std::ranges::fill(scene.particles.velocity.components[1], speed);
+        scheme.assemble(scene);
+        advance(scene);
+        return scene.time_step;
+    };
+    // Xu 2009 §3.4
+    EXPECT_DOUBLE_EQ(step(1e-6, 2, 0.5, {}), even(1, 0.2 * h / 2));
+    EXPECT_DOUBLE_EQ(step(1e-6, 0.5, 3, {}), even(1, 0.2 * h / 3));
+    EXPECT_DOUBLE_EQ(step(0.7, 0.1, 0.1, {}), even(1, 0.2 * h * h / 0.7));
+    EXPECT_DOUBLE_EQ(step(0, 2, 0.5, {{"advective_limit", "0.07"}}), even(1, 0.07 * h / 2));
+    EXPECT_DOUBLE_EQ(step(0.7, 0.1, 0.1, {{"viscous_limit", "0.03"}}), even(1, 0.03 * h * h / 0.7));
+    EXPECT_DOUBLE_EQ(step(0.7, 2, 3, {{"time_step", "0.004"}}), 0.004);
+}
+
+TEST(TimeStep, OfTheWeaklyCompressibleSchemeIsThePublishedLimit) {
+    const Scheme& scheme = schemes::find("wcsph");
+    constexpr double h = 1.5 / 16;
+    const auto step = [&](double nu, double reference_speed, Assignments given) {
+        given["h_over_dx"] = "1.5";
+        Simulation<2> scene = still_scene<2>(scheme, given, 16);
+        scene.kinematic_viscosity = nu;
+        scene.reference_speed = reference_speed;
+        scheme.assemble(scene);
+        advance(scene);
+        return scene.time_step;
+    };
+    // Lee 2008 §1.3
+    EXPECT_DOUBLE_EQ(step(1e-6, 2, {{"c0_over_u", "10"}}), even(1, 0.4 * h / 20));
+    EXPECT_DOUBLE_EQ(step(1e-6, 2, {{"c0_over_u", "40"}}), even(1, 0.4 * h / 80));
+    EXPECT_DOUBLE_EQ(step(1e-6, 2, {{"c0_over_u", "10"}, {"acoustic_limit", "0.9"}}), even(1, 0.9 * h / 20));
+    EXPECT_DOUBLE_EQ(step(3, 0.01, {}), even(1, 0.125 * h * h / 3));
+    EXPECT_DOUBLE_EQ(step(3, 0.01, {{"viscous_limit", "0.03"}}), even(1, 0.03 * h * h / 3));
+    EXPECT_DOUBLE_EQ(step(3, 2, {{"time_step", "0.004"}}), 0.004);
+}
+
+TEST(TimeStep, FollowsTheLargestAccelerationOfTheStepBefore) {
+    for (const std::string integrator : {"explicit", "predictor_corrector"}) {
+        const Scheme& scheme = schemes::find("wcsph");
+        Simulation<2> scene = flowing_scene<2>(
+            scheme, {{"integrator", integrator}, {"force_limit", "0.01"}, {"h_over_dx", "1.5"}}, 16, 0.1);
+        scheme.assemble(scene);
+        Reference<2> start(scene);
+        start.rho.assign(scene.particles.find("density")->components[0].begin(),
+                         scene.particles.find("density")->components[0].end());
+        double largest = 0;
+        for (const Vector<2>& a : start.acceleration(start.pairs_at(start.x), 0)) {
+            largest = std::max(largest, a.norm());
+        }
+        advance(scene);
+        EXPECT_NEAR(scene.maximum_acceleration, largest, 1e-9 * largest);
+        const double left = scene.end_time - scene.time;
+        advance(scene);
+        EXPECT_NEAR(scene.time_step, even(left, 0.01 * std::sqrt(1.5 / 16 / largest)), 1e-12);
+    }
+}
+
+TEST(PressureSolver, EndsTheRunWhereItDoesNotConverge) {
+    const Scheme& scheme = schemes::find("isph_df");
+    Simulation<2> scene = flowing_scene<2>(scheme, {}, 9);
+    scheme.assemble(scene);
+    scene.particles.field("pressure", 1, Lifetime::state, "scene")[0][5] =
+        not_a_number; // a guess without a residual
+    try {
+        advance(scene);
+        FAIL() << "went on";
+    } catch (const Diverged& reason) {
+        EXPECT_EQ(
+            std::string(reason.what()).find("pressure solver stopped at residual nan after 2000 iterations"),
+            0)
+            << reason.what();
+        EXPECT_NE(std::string(reason.what()).find("step 1"), std::string::npos) << reason.what();
+    }
+}
+
+} // namespace
+} // namespace sphvv::solver

@@ -1,0 +1,212 @@
+#include "sphvv/verification/run.hpp"
+
+#include "sphvv/analytic/solutions.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <limits>
+#include <stdexcept>
+
+namespace sphvv::verification {
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+
+double seconds_since(WallClock::time_point begin) {
+    return std::chrono::duration<double>(WallClock::now() - begin).count();
+}
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// For its lifetime, no more threads than the scene has work for. A step of a few thousand particles takes
+/// less than waking a thread does on a busy machine. The bits do not depend on it.
+class ThreadsFor {
+public:
+    explicit ThreadsFor(std::size_t particles) : allowed_(omp_get_max_threads()) {
+        constexpr std::size_t particles_per_thread = 2000;
+        omp_set_num_threads(std::min(allowed_, 1 + static_cast<int>(particles / particles_per_thread)));
+    }
+    ~ThreadsFor() { omp_set_num_threads(allowed_); }
+    ThreadsFor(const ThreadsFor&) = delete;
+    ThreadsFor& operator=(const ThreadsFor&) = delete;
+
+private:
+    int allowed_;
+};
+
+template <int Dim>
+void compare(const SceneRecord& scene, const solver::Simulation<Dim>& simulation, RunRecord& record) {
+    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
+    const analytic::Values values = solution_values(scene);
+    const analytic::Evaluator exact = solution.bind(values);
+    const auto& particles = simulation.particles;
+    const std::size_t count = particles.size();
+    std::array<std::vector<double>, Dim> velocity;
+    std::vector<double> pressure(count);
+    std::vector<double> volume(count, simulation.particle_mass / simulation.density);
+    if (const solver::Field* density = particles.find("density")) {
+        for (std::size_t i = 0; i < count; ++i) {
+            volume[i] = simulation.particle_mass / (*density)[0][i];
+        }
+    }
+    for (auto& component : velocity) {
+        component.resize(count);
+    }
+    double fastest = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        analytic::Vector x{};
+        for (int d = 0; d < Dim; ++d) {
+            x[d] = particles.position[d][i];
+        }
+        const analytic::State state = exact(x, simulation.time);
+        double squared = 0;
+        for (int d = 0; d < Dim; ++d) {
+            velocity[d][i] = state.velocity[d];
+            squared += state.velocity[d] * state.velocity[d];
+        }
+        fastest = std::max(fastest, squared);
+        pressure[i] = state.pressure;
+    }
+    std::vector<std::span<const double>> ours;
+    std::vector<std::span<const double>> theirs;
+    for (int d = 0; d < Dim; ++d) {
+        ours.emplace_back(particles.velocity[d], count);
+        theirs.emplace_back(velocity[d]);
+    }
+    record.maximum_speed_error = maximum_speed(simulation) / std::sqrt(fastest) - 1;
+    record.energy_error = kinetic_energy(simulation) / (simulation.density * simulation.box.volume() *
+                                                        solution.kinetic_energy(values, simulation.time)) -
+                          1;
+    if (!record.survived) {
+        return;
+    }
+    record.errors.push_back({"velocity", vector_norms(ours, theirs, volume)});
+    record.errors.push_back({"pressure", scalar_norms_up_to_a_constant(
+                                             {(*particles.find("pressure"))[0], count}, pressure, volume)});
+}
+
+template <int Dim>
+void describe(const solver::Simulation<Dim>& simulation, RunRecord& record) {
+    for (const auto& stage : simulation.stages) {
+        record.stages.push_back({stage.name, stage.seconds, stage.pair_evaluations});
+    }
+    for (const solver::Field& field : simulation.particles.fields()) {
+        std::string asked_by;
+        for (const std::string& who : field.asked_by) {
+            asked_by += (asked_by.empty() ? "" : ", ") + who;
+        }
+        record.fields.push_back({field.name, static_cast<double>(field.bytes_per_particle()), asked_by});
+    }
+    record.bytes_per_particle = static_cast<double>(simulation.particles.bytes_per_particle());
+}
+
+template <int Dim>
+RunRecord run_once(const SceneRecord& scene, const Progress& progress) {
+    const auto begin = WallClock::now();
+    solver::Simulation<Dim> simulation = build_scene<Dim>(scene);
+    const double setup_seconds = seconds_since(begin);
+    RunRecord record = step_to_end(simulation, scene, progress);
+    record.setup_seconds = setup_seconds;
+    return record;
+}
+
+bool same_bits(double a, double b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+void check_repeat(const RunRecord& first, const RunRecord& again) {
+    bool same = first.steps == again.steps && first.errors.size() == again.errors.size() &&
+                first.diagnosis == again.diagnosis;
+    for (std::size_t k = 0; same && k < first.errors.size(); ++k) {
+        const Norms& a = first.errors[k].norms;
+        const Norms& b = again.errors[k].norms;
+        same = same_bits(a.l1_abs, b.l1_abs) && same_bits(a.l2_abs, b.l2_abs) &&
+               same_bits(a.linf_abs, b.linf_abs);
+    }
+    if (!same) {
+        throw std::logic_error("two runs of " + first.scheme + " at n = " + std::to_string(first.n) +
+                               " differ: the solver is not repeatable");
+    }
+}
+
+} // namespace
+
+template <int Dim>
+RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& scene,
+                      const Progress& progress) {
+    RunRecord record;
+    const ThreadsFor threads(simulation.particles.size());
+    record.scheme = scene.scheme->name;
+    record.n = scene.n;
+    record.seed = scene.seed;
+    record.h = simulation.smoothing_length;
+    record.dx = simulation.particle_spacing;
+    record.particles = simulation.particles.size();
+    record.minimum_spacing = std::numeric_limits<double>::infinity();
+    std::vector<double> time_steps;
+    record.survived = true;
+    while (record.survived && simulation.time < simulation.end_time) {
+        const auto step = WallClock::now();
+        const std::clock_t cpu = std::clock();
+        try {
+            advance(simulation);
+            time_steps.push_back(simulation.time_step);
+        } catch (const solver::Diverged& diverged) {
+            record.survived = false;
+            record.diagnosis = diverged.what();
+        }
+        record.seconds += seconds_since(step);
+        record.cpu_seconds += static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+        record.minimum_spacing =
+            std::min(record.minimum_spacing, simulation.neighbours.minimum_distance() / record.dx);
+        if (record.survived && progress) {
+            progress(simulation.time / simulation.end_time);
+        }
+    }
+    record.time = simulation.time;
+    record.steps = simulation.step;
+    record.time_step = time_steps.empty() ? simulation.time_step : median(time_steps);
+    record.work = simulation.work;
+    compare(scene, simulation, record);
+    describe(simulation, record);
+    for (const solver::Settings* settings : {&scene.case_settings, &scene.scheme_settings}) {
+        for (const solver::Key& key : settings->keys()) {
+            record.settings.emplace_back(key.name, key.value);
+        }
+    }
+    return record;
+}
+
+template RunRecord step_to_end(solver::Simulation<2>&, const SceneRecord&, const Progress&);
+template RunRecord step_to_end(solver::Simulation<3>&, const SceneRecord&, const Progress&);
+
+RunRecord run_scene(const SceneRecord& scene, const Progress& progress) {
+    const auto run = [&] {
+        return dimension(scene) == 2 ? run_once<2>(scene, progress) : run_once<3>(scene, progress);
+    };
+    std::vector<RunRecord> runs{run()};
+    constexpr double repeat_below = 0.5; // seconds
+    if (runs[0].seconds < repeat_below) {
+        for (int repeat = 0; repeat < 2; ++repeat) {
+            runs.push_back(run());
+            check_repeat(runs[0], runs.back());
+        }
+    }
+    std::sort(runs.begin(), runs.end(),
+              [](const RunRecord& a, const RunRecord& b) { return a.seconds < b.seconds; });
+    RunRecord result = runs[runs.size() / 2];
+    result.repeats = static_cast<int>(runs.size());
+    result.seconds_spread = runs.back().seconds / runs.front().seconds - 1;
+    return result;
+}
+
+} // namespace sphvv::verification

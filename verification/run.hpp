@@ -1,0 +1,75 @@
+#pragma once
+
+#include "sphvv/verification/norms.hpp"
+#include "sphvv/verification/scene.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace sphvv::verification {
+
+/// Error of one field at the end of a run.
+struct FieldError {
+    std::string field;
+    Norms norms;
+};
+
+/// What one simulation left behind, apart from its particles.
+struct RunRecord {
+    std::string scheme;
+    int n = 0;
+    std::uint64_t seed = 1;
+    double h = 0;
+    double dx = 0;
+    std::size_t particles = 0;
+    bool survived = false;
+    std::string diagnosis; ///< the first condition of survival that was violated; empty if none
+    double time = 0;       ///< s, reached
+    std::int64_t steps = 0;
+    double time_step = 0;           ///< s, median
+    std::vector<FieldError> errors; ///< empty unless survived
+    double maximum_speed_error = 0; ///< max|u| / max|u_exact| - 1 over the domain, at the time reached
+    double energy_error = 0;        ///< kinetic energy over the exact one, minus 1, at the time reached
+    double minimum_spacing = 0;     ///< smallest pair distance / dx over the whole run
+
+    double setup_seconds = 0;
+    double seconds = 0;        ///< stepping wall time, median over the repeats
+    double seconds_spread = 0; ///< largest / smallest - 1 over the repeats
+    double cpu_seconds = 0;    ///< of the process, all threads, median run
+    int repeats = 1;
+    solver::Work work;
+
+    struct StageCost {
+        std::string name;
+        double seconds;
+        std::int64_t pair_evaluations;
+    };
+    std::vector<StageCost> stages;
+    struct FieldSize {
+        std::string name;
+        double bytes_per_particle;
+        std::string asked_by;
+    };
+    std::vector<FieldSize> fields;
+    double bytes_per_particle = 0;                             ///< of the fields
+    std::vector<std::pair<std::string, std::string>> settings; ///< every resolved key of case and scheme
+};
+
+/// Called after every completed step (outside the timing) with the share of the end time that is reached.
+using Progress = std::function<void(double fraction)>;
+
+/// Steps a simulation that was built for the scene to its end time, or to its first violated condition of
+/// survival, and compares it. The seconds are those of the stepping alone. An exception of `progress` passes
+/// through; the simulation is then at the end of a step.
+template <int Dim>
+RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& scene,
+                      const Progress& progress);
+
+/// Runs a scene to its end time, or to its first violated condition of survival, and compares the particles
+/// at their current positions with the exact solution at the current time. A run shorter than half a second
+/// is repeated (three runs in all) for the median of its timing, and must give the same bits each time
+/// (std::logic_error otherwise).
+RunRecord run_scene(const SceneRecord& scene, const Progress& progress = {});
+
+} // namespace sphvv::verification

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "sphvv/analytic/solution.hpp"
+#include "sphvv/solver/schemes.hpp"
+#include "sphvv/solver/simulation.hpp"
+#include "sphvv/verification/cases.hpp"
+
+#include <cstdint>
+
+namespace sphvv::verification {
+
+/// Everything that determines one simulation.
+struct SceneRecord {
+    const Case* flow;
+    const solver::Scheme* scheme;
+    solver::Settings case_settings;
+    solver::Settings scheme_settings;
+    int n;                  ///< particle spacings along the case's reference length
+    std::uint64_t seed = 1; ///< of a jittered start
+};
+
+/// Sorts assignments to the case's and the scheme's keys. A key that neither has throws UserError naming both
+/// lists; `also_known` are keys to pass over, because another scheme of the same command takes them.
+SceneRecord resolve_scene(const Case& flow, const solver::Scheme& scheme, const solver::Assignments& given,
+                          int n, std::span<const solver::Key> also_known = {});
+
+/// The parameters of the scene's exact solution.
+analytic::Values solution_values(const SceneRecord& scene);
+
+/// 2 or 3.
+int dimension(const SceneRecord& scene);
+
+/// Throws UserError if n is too small for a periodic box (which must hold two kernel supports, so that no
+/// particle meets two images of another) or too large for this program.
+void check_scene(const SceneRecord& scene);
+
+/// The scene's particles at t = 0, with velocity and pressure of the exact solution, and the scheme's stages.
+/// Throws as check_scene.
+template <int Dim>
+solver::Simulation<Dim> build_scene(const SceneRecord& scene);
+
+} // namespace sphvv::verification

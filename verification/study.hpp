@@ -1,0 +1,101 @@
+#pragma once
+
+#include "sphvv/verification/cost_front.hpp"
+#include "sphvv/verification/run.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sphvv::verification {
+
+/// A ladder to be run: what a study record or a command line asks for.
+struct LadderRequest {
+    const Case* flow;
+    std::vector<const solver::Scheme*> schemes;
+    solver::Assignments settings;
+    std::vector<int> ladder; ///< ascending
+    std::string tier;        ///< "quick", "nightly", "full", or "command" for one given on the command line
+};
+
+/// One rung of one scheme: the seeds' runs put together.
+struct Sample {
+    int n;
+    double h;
+    double dx;
+    std::size_t particles;
+    double time_step;
+    double steps;               ///< mean over the seeds
+    std::optional<Norms> norms; ///< geometric mean over the seeds; empty unless all survived
+    double l2_spread = 0;       ///< largest / smallest - 1 over the seeds
+    int seeds;
+    double seconds;
+    double seconds_spread;
+    int repeats;
+    double cpu_seconds;
+    double pair_evaluations;
+    double solver_iterations;
+    double matrix_entries;
+    double particle_steps;
+    bool survived;
+    std::string diagnosis;
+};
+
+/// One field of one scheme on one ladder, with its verdict.
+struct FieldStudy {
+    std::string scheme;
+    std::string field;
+    const Expectation* expectation; ///< nullptr if the project expects nothing in particular
+    std::string verdict;            ///< PASS, FAIL, INCONCLUSIVE, or NONE where no verdict was demanded
+    std::string reason;
+    std::optional<OrderFit> fit;
+    std::vector<double> order_l1; ///< pairwise; NaN at the coarsest rung
+    std::vector<double> order_l2;
+    std::vector<double> order_linf;
+    std::vector<Sample> samples;
+    bool ended_unexpectedly = false; ///< a run did not survive although nothing said that it would not
+};
+
+/// Error against one kind of cost for all schemes of a ladder.
+struct Front {
+    std::string field;
+    std::string cost; ///< "seconds" or "pair_evaluations"
+    std::vector<std::vector<int>> n;
+    std::vector<CostCurve> curves;
+    std::vector<FrontRow> rows;
+};
+
+struct ClaimFinding {
+    const Claim* claim;
+    Claim::Finding finding;
+};
+
+/// Everything that came of one LadderRequest.
+struct LadderResult {
+    LadderRequest request;
+    std::string group; ///< the case with the settings that tell this ladder apart
+    std::vector<RunRecord> runs;
+    std::vector<FieldStudy> studies;
+    std::vector<Front> fronts;
+    std::vector<ClaimFinding> claims;
+};
+
+/// Told what runs: scheme, rung, and the share of that run that is done (1 when it has ended).
+using LadderProgress = std::function<void(const std::string& group, const RunRecord& at, double fraction)>;
+
+/// Resolves every scene of the ladder without running any. Throws UserError for whatever is wrong with it.
+std::vector<SceneRecord> plan(const LadderRequest& request);
+
+/// Runs the ladder and judges it.
+LadderResult run_ladder(const LadderRequest& request, const LadderProgress& progress = {});
+
+/// The judgement alone, of runs that were made before: this is what turns samples into verdicts.
+std::vector<FieldStudy> judge_runs(const Case& flow, const std::vector<const solver::Scheme*>& schemes,
+                                   const solver::Settings& case_settings, std::span<const RunRecord> runs);
+
+/// Exit status of a ladder (cli.md): 0; 1 a verdict failed, or is inconclusive, without a waiver; 3 a run
+/// ended early unexpectedly.
+int exit_status(const LadderResult& result);
+
+} // namespace sphvv::verification

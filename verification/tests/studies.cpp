@@ -1,0 +1,318 @@
+// From samples to verdicts, without running anything: synthetic runs with a known answer.
+#include "sphvv/analytic/solutions.hpp"
+#include "sphvv/verification/document.hpp"
+#include "sphvv/verification/scene.hpp"
+#include "sphvv/verification/study.hpp"
+#include "sphvv/verification/table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace sphvv::verification {
+namespace {
+
+const solver::Scheme& scheme(const char* name) { return solver::schemes::find(name); }
+
+solver::Settings settings_of(const Case& flow, const solver::Assignments& given = {}) {
+    return solver::Settings(case_keys(flow), given);
+}
+
+/// Runs of one scheme whose L2 errors of both fields are `error(h)`.
+template <class Error>
+std::vector<RunRecord> synthetic_runs(const std::string& name, const std::vector<int>& ladder, Error&& error) {
+    std::vector<RunRecord> runs;
+    for (const int n : ladder) {
+        RunRecord run;
+        run.scheme = name;
+        run.n = n;
+        run.dx = 1.0 / n;
+        run.h = 1.3 / n;
+        run.particles = static_cast<std::size_t>(n) * n;
+        run.survived = true;
+        run.steps = n;
+        run.seconds = 1e-3 * n;
+        run.work.pair_evaluations = n * n;
+        const double e = error(run.h);
+        for (const char* field : {"velocity", "pressure"}) {
+            run.errors.push_back({field, {e, e, e, e, e, e, true}});
+        }
+        runs.push_back(run);
+    }
+    return runs;
+}
+
+/// The verdict on the velocity of isph_dfs on taylor_green at Re = 100 for these runs.
+FieldStudy judged(const std::vector<RunRecord>& runs, const char* name = "isph_dfs") {
+    const Case& flow = cases::find("taylor_green");
+    return judge_runs(flow, {&scheme(name)}, settings_of(flow), runs).front();
+}
+
+LadderResult result_of(FieldStudy study) {
+    LadderResult result{{&cases::find("taylor_green"), {&scheme("isph_dfs")}, {}, {20, 40, 80, 160}, "command"},
+                        "taylor_green re=100", {}, {}, {}, {}};
+    result.studies.push_back(std::move(study));
+    return result;
+}
+
+const std::vector<int> ladder{20, 40, 80, 160};
+
+TEST(Verdicts, FirstOrderPassesAndExitsZero) {
+    const FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [](double h) { return h; }));
+    EXPECT_EQ(study.verdict, "PASS");
+    EXPECT_EQ(exit_status(result_of(study)), 0);
+}
+
+TEST(Verdicts, WrongOrderFailsAndExitsOne) {
+    const FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [](double h) { return std::sqrt(h); }));
+    EXPECT_EQ(study.verdict, "FAIL");
+    EXPECT_EQ(exit_status(result_of(study)), 1);
+}
+
+// house.md §7.11: another code's gate prints "correct" for a field without half of its kinetic energy.
+TEST(Verdicts, HalfOfTheKineticEnergyMissingFails) {
+    const double error = 1 - std::sqrt(0.5);
+    const FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [&](double) { return error; }));
+    EXPECT_EQ(study.verdict, "FAIL") << study.reason;
+}
+
+TEST(Verdicts, FloorIsInconclusiveAndExitsOne) {
+    const FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [](double h) { return h * h + 2e-4; }));
+    EXPECT_EQ(study.verdict, "INCONCLUSIVE");
+    EXPECT_NE(study.reason.find("floor"), std::string::npos) << study.reason;
+    EXPECT_EQ(exit_status(result_of(study)), 1);
+}
+
+// house.md §7.13: a tier that cannot decide says so.
+TEST(Verdicts, NarrowLadderIsInconclusive) {
+    const FieldStudy study = judged(synthetic_runs("isph_dfs", {20, 24, 28, 32}, [](double h) { return h; }));
+    EXPECT_EQ(study.verdict, "INCONCLUSIVE");
+    EXPECT_EQ(exit_status(result_of(study)), 1);
+}
+
+TEST(Verdicts, TwoRungsAreErrorsWithoutVerdict) {
+    const FieldStudy study = judged(synthetic_runs("isph_dfs", {40, 80}, [](double h) { return h; }));
+    EXPECT_EQ(study.verdict, "NONE");
+    EXPECT_FALSE(study.fit.has_value());
+    EXPECT_EQ(exit_status(result_of(study)), 0);
+}
+
+TEST(Verdicts, UnexpectedEarlyEndFailsAndExitsThree) {
+    auto runs = synthetic_runs("isph_dfs", ladder, [](double h) { return h; });
+    runs[2].survived = false;
+    runs[2].diagnosis = "minimum spacing 0.1 dx at t = 0.5";
+    runs[2].errors.clear();
+    const FieldStudy study = judged(runs);
+    EXPECT_EQ(study.verdict, "FAIL");
+    EXPECT_NE(study.reason.find("minimum spacing"), std::string::npos);
+    EXPECT_EQ(exit_status(result_of(study)), 3);
+    EXPECT_FALSE(study.samples[2].norms.has_value());
+    const std::string table = markdown(result_of(study));
+    EXPECT_EQ(table.find("nan"), std::string::npos) << table;
+    EXPECT_NE(table.find("n = 80 ended early"), std::string::npos);
+}
+
+TEST(Verdicts, ExpectedEarlyEndPassesOnlyIfEveryRungEnds) {
+    auto runs = synthetic_runs("isph_df", ladder, [](double h) { return h; });
+    for (RunRecord& run : runs) {
+        run.survived = false;
+        run.diagnosis = "arrangement lost";
+        run.errors.clear();
+    }
+    EXPECT_EQ(judged(runs, "isph_df").verdict, "PASS");
+    auto one_survives = runs;
+    one_survives[1] = synthetic_runs("isph_df", {40}, [](double h) { return h; }).front();
+    const FieldStudy study = judged(one_survives, "isph_df");
+    EXPECT_EQ(study.verdict, "FAIL");
+    EXPECT_NE(study.reason.find("n = 40"), std::string::npos) << study.reason;
+    EXPECT_EQ(exit_status(result_of(study)), 1);
+}
+
+// house.md §7.8: a waiver changes the exit status only, and is printed wherever the verdict is.
+TEST(Verdicts, WaiverIsPrintedWithTheFailure) {
+    Expectation waived = *find_expectation(cases::find("taylor_green"), "isph_dfs", "velocity",
+                                           settings_of(cases::find("taylor_green")));
+    waived.waiver = "known: issue 0";
+    FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [](double h) { return std::sqrt(h); }));
+    study.expectation = &waived;
+    EXPECT_EQ(study.verdict, "FAIL");
+    EXPECT_EQ(exit_status(result_of(study)), 0);
+    EXPECT_NE(verdict_line(study).find("FAIL (waived: known: issue 0)"), std::string::npos);
+    LadderResult result = result_of(study);
+    const LadderResult results[] = {result};
+    const auto document = result_document("sphvv verify", current_provenance(), 1, results);
+    EXPECT_EQ(document["studies"][0]["fit"]["waiver"], "known: issue 0");
+    EXPECT_EQ(document["studies"][0]["fit"]["verdict"], "FAIL");
+}
+
+// Non-convergence that theory predicts passes, but never reads as accuracy.
+TEST(Verdicts, ExpectedStagnationIsNamed) {
+    const FieldStudy study = judged(synthetic_runs("wcsph", ladder, [](double) { return 0.77; }), "wcsph");
+    EXPECT_EQ(study.verdict, "PASS");
+    EXPECT_NE(study.reason.find("does not converge here, its finest L2 error is 0.77"), std::string::npos) << study.reason;
+    EXPECT_EQ(judged(synthetic_runs("wcsph", ladder, [](double h) { return h; }), "wcsph").verdict, "FAIL");
+}
+
+TEST(Verdicts, SeedsAreRepeatsOfARungNotRungs) {
+    std::vector<RunRecord> runs;
+    for (int seed = 1; seed <= 5; ++seed) {
+        for (RunRecord run : synthetic_runs("isph_dfs", ladder, [&](double h) { return h * (1 + 0.01 * seed); })) {
+            run.seed = static_cast<std::uint64_t>(seed);
+            runs.push_back(run);
+        }
+    }
+    const FieldStudy study = judged(runs);
+    EXPECT_EQ(study.samples.size(), 4U);
+    EXPECT_EQ(study.samples[0].seeds, 5);
+    EXPECT_NEAR(study.samples[0].l2_spread, 1.05 / 1.01 - 1, 1e-12);
+    EXPECT_NEAR(study.fit->order, 1, 1e-12);
+    EXPECT_EQ(study.verdict, "PASS");
+}
+
+// house.md §7.7: every band comes with a source and a reason, and excludes something.
+TEST(Cases, EveryExpectationHasBandReasonAndSource) {
+    for (const Case* flow : cases::all()) {
+        for (const Expectation& e : flow->expectations) {
+            SCOPED_TRACE(std::string(flow->name) + " " + e.scheme + " " + e.field);
+            EXPECT_FALSE(e.order.source.empty());
+            EXPECT_FALSE(e.text.empty());
+            EXPECT_EQ(e.ends_early, !e.order.low && !e.order.high);
+            EXPECT_NO_THROW(solver::schemes::find(e.scheme));
+            for (const Condition& condition : e.where) {
+                EXPECT_NO_THROW(settings_of(*flow).number(condition.key));
+            }
+        }
+    }
+}
+
+// house.md §7.12 and §7.9: the start arrangement is an axis, and random ones run on five fixed seeds.
+TEST(Cases, ArrangementIsAnAxisAndSeedsAreFixed) {
+    const Case& flow = cases::find("taylor_green");
+    bool jittered = false;
+    for (const Study& study : flow.studies) {
+        jittered = jittered || (study.tier == Tier::quick && study.settings.count("arrangement") == 1);
+    }
+    EXPECT_TRUE(jittered) << "the quick tier runs from the lattice only";
+    const LadderRequest request{&flow, {&scheme("isph_dfs")}, {{"arrangement", "jittered"}}, {20, 40}, "command"};
+    std::set<std::uint64_t> seeds;
+    for (const SceneRecord& scene : plan(request)) {
+        seeds.insert(scene.seed);
+    }
+    EXPECT_EQ(seeds, (std::set<std::uint64_t>{1, 2, 3, 4, 5}));
+}
+
+TEST(Cases, EveryStudyCanBePlanned) {
+    for (const Case* flow : cases::all()) {
+        ASSERT_FALSE(flow->studies.empty());
+        for (const Study& study : flow->studies) {
+            LadderRequest request{flow, {}, study.settings, study.ladder, "quick"};
+            for (const std::string& name : study.schemes) {
+                request.schemes.push_back(&scheme(name.c_str()));
+            }
+            EXPECT_NO_THROW(plan(request)) << study.name;
+            EXPECT_FALSE(study.cost.empty());
+        }
+    }
+}
+
+TEST(Cases, TheListMatchesTheFiles) {
+    std::set<std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(SPHVV_CASES)) {
+        files.insert(entry.path().stem());
+    }
+    std::set<std::string> names;
+    for (const Case* flow : cases::all()) {
+        names.insert(std::string(flow->name));
+        EXPECT_NO_THROW(analytic::solutions::find(flow->solution));
+    }
+    EXPECT_EQ(files, names);
+}
+
+TEST(Scenes, WrongKeyNamesWhatBothTake) {
+    try {
+        resolve_scene(cases::find("taylor_green"), scheme("wcsph"), {{"reynolds", "100"}}, 20);
+        FAIL();
+    } catch (const UserError& error) {
+        const std::string text = error.what();
+        EXPECT_NE(text.find("'reynolds'"), std::string::npos);
+        EXPECT_NE(text.find("re, "), std::string::npos);
+        EXPECT_NE(text.find("c0_over_u"), std::string::npos);
+    }
+}
+
+TEST(Scenes, TooCoarseNamesTheSmallestResolution) {
+    SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_dfs"), {}, 7);
+    EXPECT_THROW(check_scene(scene), UserError); // 2 x 3.9 dx does not fit into 7 dx
+    scene.n = 8;
+    EXPECT_NO_THROW(check_scene(scene));
+    scene.n = 3;
+    try {
+        check_scene(scene);
+        FAIL();
+    } catch (const UserError& error) {
+        EXPECT_NE(std::string(error.what()).find("n >= 8"), std::string::npos) << error.what();
+    }
+    scene.n = 100000;
+    EXPECT_THROW(check_scene(scene), UserError);
+}
+
+// The probe compares at the current positions and time: particles that carry the exact solution have no error.
+TEST(Runs, StartIsExactAndErrorsAreReported) {
+    SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_dfs"),
+                                      {{"end_time", "0.02"}, {"arrangement", "jittered"}}, 16);
+    const RunRecord run = run_scene(scene);
+    ASSERT_TRUE(run.survived) << run.diagnosis;
+    EXPECT_EQ(run.time, 0.02);
+    ASSERT_EQ(run.errors.size(), 2U);
+    EXPECT_GT(run.errors[0].norms.l2, 0);
+    EXPECT_LT(run.errors[0].norms.l2, 0.1);
+    EXPECT_LE(run.errors[0].norms.l1_abs, run.errors[0].norms.l2_abs);
+    EXPECT_LE(run.errors[0].norms.l2_abs, run.errors[0].norms.linf_abs);
+    EXPECT_EQ(run.repeats, 3);
+    EXPECT_EQ(run.work.particle_steps, run.steps * 256);
+}
+
+TEST(Runs, DifferentSeedsDifferAndTheSameSeedRepeats) {
+    SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("wcsph"),
+                                      {{"end_time", "0.01"}, {"arrangement", "jittered"}}, 12);
+    const double first = run_scene(scene).errors[0].norms.l2;
+    EXPECT_EQ(first, run_scene(scene).errors[0].norms.l2);
+    scene.seed = 2;
+    EXPECT_NE(first, run_scene(scene).errors[0].norms.l2);
+}
+
+TEST(Runs, ALostArrangementEndsTheRunWithItsDiagnosis) {
+    const SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_df"), {}, 40);
+    const RunRecord run = run_scene(scene);
+    EXPECT_FALSE(run.survived);
+    EXPECT_LT(run.time, 0.5);
+    EXPECT_NE(run.diagnosis.find("particle"), std::string::npos) << run.diagnosis;
+    EXPECT_NE(run.diagnosis.find("t = "), std::string::npos) << run.diagnosis;
+    EXPECT_TRUE(run.errors.empty());
+}
+
+// verification.md §12: what each scheme's periodic scene carries, and nothing else.
+TEST(Runs, ScenesAreLean) {
+    const auto names = [](const char* of) {
+        SceneRecord scene =
+            resolve_scene(cases::find("taylor_green"), scheme(of), {{"end_time", "0.01"}}, 12);
+        const RunRecord run = run_scene(scene);
+        std::set<std::string> fields;
+        for (const auto& field : run.fields) {
+            fields.insert(field.name);
+        }
+        return fields;
+    };
+    EXPECT_EQ(names("isph_df"),
+              (std::set<std::string>{"position", "velocity", "pressure", "velocity_next", "renormalisation"}));
+    EXPECT_EQ(names("isph_dfs"), (std::set<std::string>{"position", "velocity", "pressure", "velocity_next",
+                                                        "renormalisation", "shift_correction"}));
+    EXPECT_EQ(names("wcsph"),
+              (std::set<std::string>{"position", "velocity", "pressure", "density", "density_rate", "acceleration",
+                                     "pressure_over_squared_density", "specific_volume"}));
+}
+
+} // namespace
+} // namespace sphvv::verification
