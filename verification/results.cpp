@@ -366,6 +366,10 @@ ResultTree read_group(const Group& group, int depth) {
     throw UserError(path.string() + ": " + what);
 }
 
+[[noreturn]] void refuse_incomplete(const std::filesystem::path& path, const std::string& fault) {
+    refuse(path, "not a complete result file: " + fault);
+}
+
 /// Refuses what another program, or a newer one of ours, has written.
 void check_format(const ResultTree& name, const ResultTree& version, const std::filesystem::path& path) {
     if (name != format_name) {
@@ -467,33 +471,34 @@ void for_each_object(const ResultTree& tree, std::string_view way, const std::st
     }
 }
 
-/// Empty, or what is wrong with a member.
-std::string fault_of(const ResultTree& object, const std::string& name, std::string_view kind,
-                     bool optional) {
-    if (!object.contains(name)) {
-        return optional ? "" : "is missing";
+/// Empty, or what is wrong with a member of an object that stands at `where`.
+std::string fault_of(const ResultTree& object, const std::string& where, std::string_view name,
+                     std::string_view kind, bool optional) {
+    const std::string member = (where.empty() ? "" : where + ".") + std::string(name);
+    if (!object.is_object()) {
+        return (where.empty() ? "the root" : where) + " is not an object";
     }
-    const ResultTree& value = object.at(name);
+    if (!object.contains(name)) {
+        return optional ? "" : member + " is missing";
+    }
+    const ResultTree& value = object.at(std::string(name));
     // Entries of a table may be null.
     const bool may_be_null = optional || kind == "a number" || kind == "a text";
-    return is_kind(value, kind) || (value.is_null() && may_be_null) ? "" : "is not " + std::string(kind);
+    return is_kind(value, kind) || (value.is_null() && may_be_null) ? ""
+                                                                    : member + " is not " + std::string(kind);
 }
 
 void check_members(const ResultTree& tree, const std::filesystem::path& path) {
-    const auto fail = [&](const std::string& what) { refuse(path, "not a complete result file: " + what); };
     for (const Members& row : members) {
         for_each_object(tree, row.of, "", [&](const ResultTree& object, const std::string& where) {
-            if (!object.is_object()) {
-                fail((where.empty() ? "the root" : where) + " is not an object");
-            }
             for (std::string_view rest = row.names; !rest.empty();) {
                 std::string_view name = rest.substr(0, rest.find(' '));
                 rest.remove_prefix(std::min(rest.size(), name.size() + 1));
                 const bool optional = name.ends_with('?');
                 name.remove_suffix(optional ? 1 : 0);
-                const std::string fault = fault_of(object, std::string(name), row.kind, optional);
+                const std::string fault = fault_of(object, where, name, row.kind, optional);
                 if (!fault.empty()) {
-                    fail((where.empty() ? "" : where + ".") + std::string(name) + " " + fault);
+                    refuse_incomplete(path, fault);
                 }
             }
         });
@@ -502,7 +507,7 @@ void check_members(const ResultTree& tree, const std::filesystem::path& path) {
 
 /// What kinds of members cannot say.
 void check_agreement(const ResultTree& tree, const std::filesystem::path& path) {
-    const auto fail = [&](const std::string& what) { refuse(path, "not a complete result file: " + what); };
+    const auto fail = [&](const std::string& what) { refuse_incomplete(path, what); };
     for_each_object(tree, "studies[]", "", [&](const ResultTree& study, const std::string& where) {
         const ResultTree& fit = study.at("fit");
         constexpr std::array known{"PASS", "FAIL", "INCONCLUSIVE", "NONE"};

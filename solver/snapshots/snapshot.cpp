@@ -166,7 +166,7 @@ void check_texts(const Group& root, const Assignments& stored, const Assignments
 template <class T>
 void check_equal(const Group& root, const std::string& what, const std::vector<T>& stored,
                  const std::vector<T>& here) {
-    const auto listing = [](const std::vector<T>& values) {
+    const auto tuple = [](const std::vector<T>& values) {
         std::string list;
         for (const T value : values) {
             list += (list.empty() ? "" : ", ") + shortest(static_cast<double>(value));
@@ -174,7 +174,7 @@ void check_equal(const Group& root, const std::string& what, const std::vector<T
         return values.size() == 1 ? list : "(" + list + ")";
     };
     if (stored != here) {
-        refuse_scene(root, what, listing(stored), listing(here));
+        refuse_scene(root, what, tuple(stored), tuple(here));
     }
 }
 
@@ -197,7 +197,7 @@ void check_scene(const Group& root, const Simulation<Dim>& simulation, const Ass
                 periodic_flags(simulation.box));
 }
 
-std::string names_of_fields(const std::vector<std::string>& names) {
+std::string listing(const std::vector<std::string>& names) {
     std::string list;
     for (const std::string& name : names) {
         list += (list.empty() ? "" : ", ") + name;
@@ -218,7 +218,7 @@ void check_fields(const Group& root, const Particles<Dim>& particles) {
     std::sort(here.begin(), here.end());
     std::sort(stored.begin(), stored.end());
     if (stored != here) {
-        refuse_scene(root, "list of state fields", names_of_fields(stored), names_of_fields(here));
+        refuse_scene(root, "list of state fields", listing(stored), listing(here));
     }
 }
 
@@ -260,14 +260,13 @@ std::vector<int> read_identity(const Group& group, std::size_t count) {
 template <int Dim>
 std::vector<std::int64_t> read_stages(const Group& root, const std::vector<Stage<Dim>>& stages) {
     const Group group = root.group("stages");
-    std::vector<std::string> here;
-    for (const Stage<Dim>& stage : stages) {
-        here.push_back(stage.name);
-    }
+    std::vector<std::string> here(stages.size());
+    std::transform(stages.begin(), stages.end(), here.begin(),
+                   [](const Stage<Dim>& stage) { return stage.name; });
     const std::vector<std::string> stored = group.dataset<std::string>("name");
     std::vector<std::int64_t> pair_evaluations = group.dataset<std::int64_t>("pair_evaluations");
     if (stored != here || pair_evaluations.size() != here.size()) {
-        refuse_scene(root, "list of stages", names_of_fields(stored), names_of_fields(here));
+        refuse_scene(root, "list of stages", listing(stored), listing(here));
     }
     return pair_evaluations;
 }

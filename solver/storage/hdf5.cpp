@@ -220,21 +220,19 @@ Kind kind_of(hid_t type) {
     }
 }
 
-/// What H5Literate and H5Aiterate collect; an exception must not pass through the library.
-struct Names {
-    std::vector<std::string> names;
-
-    void add(const char* name) noexcept { names.emplace_back(name); }
-};
-
-herr_t collect_link(hid_t, const char* name, const H5L_info_t*, void* names) {
-    static_cast<Names*>(names)->add(name);
-    return 0;
+/// Adds a name to a list; negative, which ends the iteration, if it is not UTF-8. (No exception may pass
+/// through the library; without memory the program ends.)
+herr_t add_name(const char* name, void* names) noexcept {
+    static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+    return valid_utf8(name) == name ? 0 : -1;
 }
 
-herr_t collect_attribute(hid_t, const char* name, const H5A_info_t*, void* names) {
-    static_cast<Names*>(names)->add(name);
-    return 0;
+herr_t add_link(hid_t, const char* name, const H5L_info_t*, void* names) {
+    return add_name(name, names);
+}
+
+herr_t add_attribute(hid_t, const char* name, const H5A_info_t*, void* names) {
+    return add_name(name, names);
 }
 
 H5_index_t order_of(hid_t group, herr_t (*get)(hid_t, unsigned*)) {
@@ -366,21 +364,21 @@ Group open_hdf5(const std::filesystem::path& path) {
 }
 
 std::vector<std::string> Group::attribute_names() const {
-    Names found;
+    std::vector<std::string> names;
     if (H5Aiterate2(handle_.get(), order_of(handle_.get(), H5Pget_attr_creation_order), H5_ITER_INC, nullptr,
-                    collect_attribute, &found) < 0) {
+                    add_attribute, &names) < 0) {
         refuse_damaged("");
     }
-    return found.names;
+    return names;
 }
 
 std::vector<std::string> Group::member_names() const {
-    Names found;
+    std::vector<std::string> names;
     if (H5Literate(handle_.get(), order_of(handle_.get(), H5Pget_link_creation_order), H5_ITER_INC, nullptr,
-                   collect_link, &found) < 0) {
+                   add_link, &names) < 0) {
         refuse_damaged("");
     }
-    return found.names;
+    return names;
 }
 
 bool Group::has_attribute(std::string_view name) const {
@@ -523,10 +521,10 @@ std::vector<std::string> Group::read_variable_texts(const Values& values, std::s
     H5Tset_cset(type.get(), H5Tget_cset(values.type.get()));
     std::vector<char*> pointers(texts, nullptr);
     const bool sound = texts == 0 || values.read(values.object.get(), type.get(), pointers.data()) >= 0;
-    std::vector<std::string> result;
-    for (const char* pointer : pointers) {
-        result.push_back(pointer == nullptr ? "" : valid_utf8(pointer));
-    }
+    std::vector<std::string> result(texts);
+    std::transform(pointers.begin(), pointers.end(), result.begin(), [](const char* pointer) {
+        return pointer == nullptr ? std::string() : valid_utf8(pointer);
+    });
     H5Dvlen_reclaim(type.get(), values.space.get(), H5P_DEFAULT, pointers.data());
     if (!sound) {
         refuse_damaged(values.name);

@@ -70,7 +70,8 @@ TEST(Jitter, DependsOnItsSeedOnly) {
     const Points<3> points = displaced(0.1, 7);
     for (int i = 0; i < size<3>(points); ++i) {
         for (int d = 0; d < 3; ++d) {
-            const double uniform = std::floor(static_cast<long double>(engine()) / 2048) / 0x1p53;
+            const auto uniform =
+                static_cast<double>(std::floor(static_cast<long double>(engine()) / 2048) / 0x1p53L);
             EXPECT_NEAR(points[d][i], start[d][i] + 0.1 * (2 * uniform - 1), 1e-16);
         }
     }

@@ -564,7 +564,7 @@ void expect_seen(const Seen& seen, const Simulation<Dim>& simulation, double tim
     EXPECT_EQ(seen.time, time);
     EXPECT_EQ(seen.points, simulation.particles.size());
     EXPECT_EQ(seen.cells, simulation.particles.size());
-    for (int d = 0; d < 3; ++d) {
+    for (std::size_t d = 0; d < 3; ++d) {
         const std::vector<double> zero{0};
         const std::vector<double>& x = d < Dim ? simulation.particles.position.components[d] : zero;
         EXPECT_EQ(seen.bounds[2 * d], *std::min_element(x.begin(), x.end()));
@@ -576,7 +576,7 @@ void expect_seen(const Seen& seen, const Simulation<Dim>& simulation, double tim
     EXPECT_EQ(seen.fields.at("pressure").low, *std::min_element(pressure.begin(), pressure.end()));
     EXPECT_EQ(seen.fields.at("pressure").high, *std::max_element(pressure.begin(), pressure.end()));
     EXPECT_EQ(seen.fields.at("velocity").components, 3U);
-    EXPECT_EQ(seen.fields.at("tensor").components, static_cast<std::size_t>(Dim * Dim));
+    EXPECT_EQ(seen.fields.at("tensor").components, std::size_t{Dim} * Dim);
     EXPECT_EQ(seen.fields.at("id").high, static_cast<double>(simulation.particles.size() - 1));
     EXPECT_FALSE(seen.fields.contains("position"));
 }

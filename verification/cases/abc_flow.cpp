@@ -21,7 +21,8 @@ const Case& abc_flow() {
                  .order = {0.9, std::nullopt,
                            "forward Euler with dt proportional to h; Xu 2009 §4.3.2 (2-D): about 1, "
                            "criterion >= 0.9"},
-                 .text = "the forward Euler velocity step leaves an error of O(dt), and dt = 0.2 h/U; the smoothing error of a "
+                 .text = "the forward Euler velocity step leaves an error of O(dt), and dt = 0.2 h/U; the "
+                         "smoothing error of a "
                          "coarse 3-D ladder falls faster, so the order comes down to 1 from above"},
             },
         .claims = {},

@@ -94,7 +94,7 @@ std::string canonical(const ResultTree& tree) {
     return nlohmann::json::parse(tree.dump()).dump();
 }
 
-ResultTree with_header(ResultTree members) {
+ResultTree with_header(const ResultTree& members) {
     ResultTree tree{{"format", "sphvv-results"}, {"format_version", 1}};
     tree.update(members);
     return tree;
@@ -102,7 +102,7 @@ ResultTree with_header(ResultTree members) {
 
 /// A small tree with all that FORMAT.md asks for.
 ResultTree complete() {
-    const auto sample = [](int n, ResultTree error, const char* diagnosis) {
+    const auto sample = [](int n, const ResultTree& error, const char* diagnosis) {
         ResultTree row{{"n", n},     {"h", 1.3 / n}, {"dx", 1.0 / n}, {"particles", n * n},
                        {"dt", 1e-3}, {"steps", 100}};
         for (const char* name : {"l1", "l2", "linf", "l1_abs", "l2_abs", "linf_abs"}) {
