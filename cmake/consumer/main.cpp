@@ -1,8 +1,7 @@
 // Somebody else's program: judges its own errors with our norms and orders. Exits 0 if order 2 is recognised.
+#include <cstdio>
 #include <sphvv/verification/norms.hpp>
 #include <sphvv/verification/order.hpp>
-
-#include <cstdio>
 #include <vector>
 
 int main() {

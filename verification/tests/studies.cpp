@@ -14,7 +14,9 @@
 namespace sphvv::verification {
 namespace {
 
-const solver::Scheme& scheme(const char* name) { return solver::schemes::find(name); }
+const solver::Scheme& scheme(const char* name) {
+    return solver::schemes::find(name);
+}
 
 solver::Settings settings_of(const Case& flow, const solver::Assignments& given = {}) {
     return solver::Settings(case_keys(flow), given);
@@ -22,7 +24,8 @@ solver::Settings settings_of(const Case& flow, const solver::Assignments& given 
 
 /// Runs of one scheme whose L2 errors of both fields are `error(h)`.
 template <class Error>
-std::vector<RunRecord> synthetic_runs(const std::string& name, const std::vector<int>& ladder, Error&& error) {
+std::vector<RunRecord> synthetic_runs(const std::string& name, const std::vector<int>& ladder,
+                                      Error&& error) {
     std::vector<RunRecord> runs;
     for (const int n : ladder) {
         RunRecord run;
@@ -51,8 +54,13 @@ FieldStudy judged(const std::vector<RunRecord>& runs, const char* name = "isph_d
 }
 
 LadderResult result_of(FieldStudy study) {
-    LadderResult result{{&cases::find("taylor_green"), {&scheme("isph_dfs")}, {}, {20, 40, 80, 160}, "command"},
-                        "taylor_green re=100", {}, {}, {}, {}};
+    LadderResult result{
+        {&cases::find("taylor_green"), {&scheme("isph_dfs")}, {}, {20, 40, 80, 160}, "command"},
+        "taylor_green re=100",
+        {},
+        {},
+        {},
+        {}};
     result.studies.push_back(std::move(study));
     return result;
 }
@@ -66,7 +74,8 @@ TEST(Verdicts, FirstOrderPassesAndExitsZero) {
 }
 
 TEST(Verdicts, WrongOrderFailsAndExitsOne) {
-    const FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [](double h) { return std::sqrt(h); }));
+    const FieldStudy study =
+        judged(synthetic_runs("isph_dfs", ladder, [](double h) { return std::sqrt(h); }));
     EXPECT_EQ(study.verdict, "FAIL");
     EXPECT_EQ(exit_status(result_of(study)), 1);
 }
@@ -79,7 +88,8 @@ TEST(Verdicts, HalfOfTheKineticEnergyMissingFails) {
 }
 
 TEST(Verdicts, FloorIsInconclusiveAndExitsOne) {
-    const FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [](double h) { return h * h + 2e-4; }));
+    const FieldStudy study =
+        judged(synthetic_runs("isph_dfs", ladder, [](double h) { return h * h + 2e-4; }));
     EXPECT_EQ(study.verdict, "INCONCLUSIVE");
     EXPECT_NE(study.reason.find("floor"), std::string::npos) << study.reason;
     EXPECT_EQ(exit_status(result_of(study)), 1);
@@ -151,14 +161,16 @@ TEST(Verdicts, WaiverIsPrintedWithTheFailure) {
 TEST(Verdicts, ExpectedStagnationIsNamed) {
     const FieldStudy study = judged(synthetic_runs("wcsph", ladder, [](double) { return 0.77; }), "wcsph");
     EXPECT_EQ(study.verdict, "PASS");
-    EXPECT_NE(study.reason.find("does not converge here, its finest L2 error is 0.77"), std::string::npos) << study.reason;
+    EXPECT_NE(study.reason.find("does not converge here, its finest L2 error is 0.77"), std::string::npos)
+        << study.reason;
     EXPECT_EQ(judged(synthetic_runs("wcsph", ladder, [](double h) { return h; }), "wcsph").verdict, "FAIL");
 }
 
 TEST(Verdicts, SeedsAreRepeatsOfARungNotRungs) {
     std::vector<RunRecord> runs;
     for (int seed = 1; seed <= 5; ++seed) {
-        for (RunRecord run : synthetic_runs("isph_dfs", ladder, [&](double h) { return h * (1 + 0.01 * seed); })) {
+        for (RunRecord run :
+             synthetic_runs("isph_dfs", ladder, [&](double h) { return h * (1 + 0.01 * seed); })) {
             run.seed = static_cast<std::uint64_t>(seed);
             runs.push_back(run);
         }
@@ -195,7 +207,8 @@ TEST(Cases, ArrangementIsAnAxisAndSeedsAreFixed) {
         jittered = jittered || (study.tier == Tier::quick && study.settings.count("arrangement") == 1);
     }
     EXPECT_TRUE(jittered) << "the quick tier runs from the lattice only";
-    const LadderRequest request{&flow, {&scheme("isph_dfs")}, {{"arrangement", "jittered"}}, {20, 40}, "command"};
+    const LadderRequest request{
+        &flow, {&scheme("isph_dfs")}, {{"arrangement", "jittered"}}, {20, 40}, "command"};
     std::set<std::uint64_t> seeds;
     for (const SceneRecord& scene : plan(request)) {
         seeds.insert(scene.seed);
@@ -258,7 +271,8 @@ TEST(Scenes, TooCoarseNamesTheSmallestResolution) {
     EXPECT_THROW(check_scene(scene), UserError);
 }
 
-// The probe compares at the current positions and time: particles that carry the exact solution have no error.
+// The probe compares at the current positions and time: particles that carry the exact solution have no
+// error.
 TEST(Runs, StartIsExactAndErrorsAreReported) {
     SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_dfs"),
                                       {{"end_time", "0.02"}, {"arrangement", "jittered"}}, 16);
@@ -305,13 +319,13 @@ TEST(Runs, ScenesAreLean) {
         }
         return fields;
     };
-    EXPECT_EQ(names("isph_df"),
-              (std::set<std::string>{"position", "velocity", "pressure", "velocity_next", "renormalisation"}));
+    EXPECT_EQ(names("isph_df"), (std::set<std::string>{"position", "velocity", "pressure", "velocity_next",
+                                                       "renormalisation"}));
     EXPECT_EQ(names("isph_dfs"), (std::set<std::string>{"position", "velocity", "pressure", "velocity_next",
                                                         "renormalisation", "shift_correction"}));
     EXPECT_EQ(names("wcsph"),
-              (std::set<std::string>{"position", "velocity", "pressure", "density", "density_rate", "acceleration",
-                                     "pressure_over_squared_density", "specific_volume"}));
+              (std::set<std::string>{"position", "velocity", "pressure", "density", "density_rate",
+                                     "acceleration", "pressure_over_squared_density", "specific_volume"}));
 }
 
 } // namespace
