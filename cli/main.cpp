@@ -52,10 +52,7 @@ std::string subcommand_names(const CLI::App& app) {
     }
     return names;
 }
-} // namespace
-
-int main(int argc, char** argv) {
-    wait_without_spinning(argv);
+int answer(int argc, char** argv) {
     using namespace sphvv;
     constexpr int wrong_use = 2;
     constexpr int not_finished = 3;
@@ -107,5 +104,16 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         std::cerr << "sphvv: internal error: " << error.what() << '\n';
         return not_finished;
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    wait_without_spinning(argv);
+    try {
+        return answer(argc, argv);
+    } catch (...) { // only memory for the message itself can be missing here
+        return 3;
     }
 }

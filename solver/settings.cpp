@@ -48,17 +48,19 @@ std::string Key::accepted() const {
 }
 
 Settings::Settings(std::vector<Key> keys, const Assignments& given) : keys_(std::move(keys)) {
-    for (const auto& [name, text] : given) {
+    for (const auto& assignment : given) {
+        const std::string& name = assignment.first;
         const auto key =
             std::find_if(keys_.begin(), keys_.end(), [&](const Key& k) { return k.name == name; });
         if (key == keys_.end()) {
             std::string accepted;
             for (const Key& k : keys_) {
-                accepted += (accepted.empty() ? "" : ", ") + k.name;
+                accepted.append(accepted.empty() ? "" : ", ").append(k.name);
             }
-            throw UserError("there is no key '" + name + "'; accepted: " + accepted);
+            throw UserError(
+                std::string("there is no key '").append(name).append("'; accepted: ").append(accepted));
         }
-        key->value = text;
+        key->value = assignment.second;
     }
     for (Key& key : keys_) {
         const std::string where = "key '" + key.name + "'";

@@ -20,7 +20,7 @@ std::string group_label(const LadderRequest& request, const SceneRecord& scene) 
         std::string(request.flow->name) + " " + leading + "=" + scene.case_settings.text(leading);
     for (const auto& [key, value] : request.settings) {
         if (key != leading) {
-            label += " " + key + "=" + value;
+            label.append(" ").append(key).append("=").append(value);
         }
     }
     return label;
@@ -77,6 +77,7 @@ Sample sample_of(const std::vector<const RunRecord*>& runs, const std::string& f
     }
     const auto over_seeds = [&](double Norms::*norm) {
         std::vector<double> values;
+        values.reserve(runs.size());
         for (const RunRecord* run : runs) {
             values.push_back(error_of(*run, field)->norms.*norm);
         }

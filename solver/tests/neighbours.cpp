@@ -326,7 +326,8 @@ TYPED_TEST(Neighbours, OfParticlesOnFacesAndCellBorders) {
     constexpr int Dim = TypeParam::value;
     // cells of edge 1/4; multiples of 1/8 with their neighbouring floating-point numbers
     std::vector<double> coordinates;
-    for (double x = 0; x < 1; x += 0.125) {
+    for (int eighths = 0; eighths < 8; ++eighths) {
+        const double x = 0.125 * eighths;
         coordinates.insert(coordinates.end(), {x, std::nextafter(x, 2.)});
         if (x > 0) {
             coordinates.push_back(std::nextafter(x, -1.));

@@ -4,6 +4,7 @@
 #include "sphvv/solver/storage/write_atomically.hpp"
 
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <csignal>
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -223,6 +225,14 @@ TEST_F(Storage, RespectsPermissions) {
     EXPECT_EQ(entries(folder / "closed"), 0U);
 }
 
+TEST_F(Storage, LeavesTheTemporaryFileOfAnotherWriterAlone) {
+    const fs::path other = folder / (".sphvv-part-" + std::to_string(::getpid()) + "-0");
+    put(other, "another");
+    write_atomically(folder / "file", "own");
+    EXPECT_EQ(content(other), "another");
+    EXPECT_EQ(content(folder / "file"), "own");
+}
+
 TEST_F(Storage, ManyWritersDoNotMeet) {
     const fs::path path = folder / "file";
 #pragma omp parallel for
@@ -390,6 +400,116 @@ TEST_F(Storage, SaysWhyAFileCannotBeRead) {
     fs::permissions(folder / "e.h5", fs::perms(0000));
     const Unprivileged user;
     expect_mentions(opening(folder / "e.h5"), {"cannot be read", "Permission denied"});
+}
+
+TEST_F(Storage, TheLibraryKeepsQuiet) {
+    put(folder / "head.h5", "\x89HDF\r\n\x1a\n");
+    testing::internal::CaptureStderr();
+    refusal([&] { open_hdf5(folder / "head.h5"); });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(Storage, ComposingDoesNotReadWhatIsThere) {
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0); // it would wait for ever
+    expect_mentions(refusal([&] { write_example(folder / "pipe"); }), {"not a regular file"});
+}
+
+/// A file made with the library alone.
+template <class Fill>
+void make_foreign(const fs::path& path, Fill&& fill) {
+    const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    ASSERT_TRUE(file.valid());
+    fill(file.get());
+}
+
+TEST_F(Storage, WaysOutOfTheTreeAreRefused) {
+    write_example(folder / "e.h5");
+    make_foreign(folder / "links.h5", [](hid_t file) {
+        const Handle group(H5Gcreate2(file, "group", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+        EXPECT_GE(H5Lcreate_soft("/group", file, "soft", H5P_DEFAULT, H5P_DEFAULT), 0);
+        EXPECT_GE(H5Lcreate_external("e.h5", "/group", file, "external", H5P_DEFAULT, H5P_DEFAULT), 0);
+        const Handle twice(H5Gcreate2(file, "twice", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+        EXPECT_GE(H5Lcreate_hard(file, "twice", twice.get(), "itself", H5P_DEFAULT, H5P_DEFAULT), 0);
+    });
+    const Group root = open_hdf5(folder / "links.h5");
+    EXPECT_EQ(root.member_names().size(), 4U);
+    EXPECT_TRUE(root.is_group("group"));
+    expect_mentions(refusal([&] { root.group("soft"); }), {"/soft is a link"});
+    expect_mentions(refusal([&] { root.is_group("external"); }), {"/external is a link"});
+    expect_mentions(refusal([&] { root.group("twice"); }), {"/twice has a second place"});
+}
+
+TEST_F(Storage, MoreThanAFileCanHoldIsRefused) {
+    make_foreign(folder / "huge.h5", [](hid_t file) {
+        const hsize_t count = 1000000000000;
+        const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+        const Handle set(
+            H5Dcreate2(file, "x", H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+            H5Dclose);
+        EXPECT_TRUE(set.valid());
+    });
+    const Group root = open_hdf5(folder / "huge.h5");
+    EXPECT_EQ(root.extent("x").rows, 1000000000000U);
+    expect_mentions(refusal([&] { root.dataset<double>("x"); }), {"damaged", "/x"});
+}
+
+TEST_F(Storage, ReadsTextsOfFixedLengthAndRefusesOtherKinds) {
+    make_foreign(folder / "fixed.h5", [](hid_t file) {
+        const hsize_t count = 2;
+        const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+        for (const auto& [name, padding] :
+             {std::pair("null", H5T_STR_NULLPAD), std::pair("space", H5T_STR_SPACEPAD)}) {
+            const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+            H5Tset_size(type.get(), 4);
+            H5Tset_strpad(type.get(), padding);
+            const Handle attribute(H5Acreate2(file, name, type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                                   H5Aclose);
+            EXPECT_GE(
+                H5Awrite(attribute.get(), type.get(), padding == H5T_STR_NULLPAD ? "ab\0\0wxyz" : "a b wxyz"),
+                0);
+        }
+        const Handle type(H5Tcreate(H5T_OPAQUE, 4), H5Tclose);
+        const Handle attribute(H5Acreate2(file, "opaque", type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose);
+    });
+    const Group root = open_hdf5(folder / "fixed.h5");
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(root.attribute_array<std::string>("null"), (Texts{"ab", "wxyz"}));
+    EXPECT_EQ(root.attribute_array<std::string>("space"), (Texts{"a b", "wxyz"}));
+    EXPECT_EQ(root.attribute_kind("opaque"), Kind::other);
+    expect_mentions(refusal([&] { root.attribute_array<double>("opaque"); }), {"/opaque is not a number"});
+}
+
+TEST_F(Storage, NoFlippedBitChangesANumberOrMixesUpTexts) {
+    const std::vector<std::string> words{"north", "south"};
+    write_hdf5(folder / "e.h5", [&](const Group& root) {
+        root.set_attribute<std::int64_t>("integer", 7);
+        root.create_dataset("reals", all(reals));
+        root.create_dataset("long", all(std::vector<double>(9000, 0.1))); // too long for the header
+        root.create_dataset("words", all(words));
+    });
+    const std::string whole = content(folder / "e.h5");
+    const std::size_t heap = whole.find("GCOL");
+    ASSERT_NE(heap, std::string::npos);
+    int refused = 0;
+    for (std::size_t byte = 0; byte < whole.size(); byte += byte < 3000 ? 7 : 211) {
+        if (byte >= heap && byte < heap + 4096) {
+            continue; // the texts themselves
+        }
+        std::string damaged = whole;
+        damaged[byte] = static_cast<char>(damaged[byte] ^ 1 << byte % 8);
+        put(folder / "d.h5", damaged);
+        try {
+            const Group root = open_hdf5(folder / "d.h5");
+            EXPECT_EQ(root.attribute<std::int64_t>("integer"), 7) << byte;
+            EXPECT_EQ(root.dataset<double>("reals"), reals) << byte;
+            EXPECT_EQ(root.dataset<double>("long"), std::vector<double>(9000, 0.1)) << byte;
+            EXPECT_EQ(root.dataset<std::string>("words"), words) << byte;
+        } catch (const UserError&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(refused, 100);
 }
 
 TEST_F(Storage, EveryTruncatedFileIsRefused) {
