@@ -20,6 +20,12 @@
 #include <utility>
 #include <vector>
 
+/// For -fsanitize=address: the HDF5 library (1.10.8) does not free all when it gives up on a damaged file.
+extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions() { // NOLINT(bugprone-reserved-identifier)
+    return "leak:libhdf5";
+}
+
 namespace {
 
 using namespace sphvv::solver::storage;
