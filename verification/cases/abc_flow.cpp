@@ -18,12 +18,14 @@ const Case& abc_flow() {
                 {.scheme = "isph_dfs",
                  .field = "velocity",
                  .where = {{"re", 50, 1e4}},
-                 .order = {0.9, std::nullopt,
+                 .order = {0.9, 2.0,
                            "forward Euler with dt proportional to h; Xu 2009 §4.3.2 (2-D): about 1, "
                            "criterion >= 0.9"},
                  .text = "the forward Euler velocity step leaves an error of O(dt), and dt = 0.2 h/U; the "
                          "smoothing error of a "
-                         "coarse 3-D ladder falls faster, so the order comes down to 1 from above"},
+                         "coarse 3-D ladder falls faster, so the order comes down to 1 from above",
+                 .waiver = "on 8 to 32^3 the order falls from 3.5 to 1: not asymptotic, finer rungs are not "
+                           "run yet"},
             },
         .claims = {},
         .studies =
