@@ -27,6 +27,7 @@ int report(const std::vector<std::string>& files, const std::string& out, bool q
         words.emplace_back("--quiet");
     }
     std::vector<char*> arguments;
+    arguments.reserve(words.size() + 1);
     for (std::string& word : words) {
         arguments.push_back(word.data());
     }

@@ -83,8 +83,10 @@ Description read_scene_file(const std::string& path) {
                     text_of(std::string(set_name.str()), value);
             }
         } else {
-            throw UserError("--scene: '" + path + "': there is no key '" + key +
-                            "'; accepted: case, scheme, n, seed, and a table [set]");
+            std::string sentence = "--scene: '" + path;
+            sentence +=
+                "': there is no key '" + key + "'; accepted: case, scheme, n, seed, and a table [set]";
+            throw UserError(sentence);
         }
     }
     return description;

@@ -14,7 +14,6 @@ namespace {
 using verification::LadderRequest;
 using verification::LadderResult;
 using verification::Study;
-using verification::Tier;
 
 struct Options {
     Common common;

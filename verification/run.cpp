@@ -5,9 +5,10 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <ctime>
 #include <limits>
 #include <stdexcept>
@@ -120,7 +121,7 @@ RunRecord run_once(const SceneRecord& scene, const Progress& progress) {
 }
 
 bool same_bits(double a, double b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 void check_repeat(const RunRecord& first, const RunRecord& again) {

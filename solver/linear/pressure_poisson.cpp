@@ -64,7 +64,7 @@ struct generic_product_impl<sphvv::solver::PairMatrix<Dim>, Rhs, SparseShape, De
     template <class Destination>
     static void scaleAndAddTo(Destination& y, const sphvv::solver::PairMatrix<Dim>& A, const Rhs& x,
                               double alpha) {
-        const VectorXd source = x;
+        const Ref<const VectorXd> source(x);
         VectorXd product(source.size());
         A.problem.multiply(source.data(), product.data());
         y += alpha * product;
@@ -195,7 +195,7 @@ public:
     }
     template <class Rhs>
     Eigen::VectorXd solve(const Rhs& residual) const {
-        const Eigen::VectorXd r = residual;
+        const Eigen::Ref<const Eigen::VectorXd> r(residual);
         Eigen::VectorXd z = r.cwiseQuotient(problem_->diagonal_);
         if (problem_->coarse_) {
             problem_->coarse_->add_correction(*problem_, r.data(), z.data());

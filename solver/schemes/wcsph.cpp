@@ -172,7 +172,7 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Fi
             start.components[Dim + d] = sim.particles.velocity.components[d];
             std::fill(moved.components[d].begin(), moved.components[d].end(), 0.0);
         }
-        start.components[2 * Dim] = f->density.components[0];
+        start.components.back() = f->density.components[0];
         add_scaled<Dim>(moved, half, sim.particles.velocity, count);
         add_scaled<Dim>(sim.particles.position, 1, moved, count);
         add_scaled<Dim>(sim.particles.velocity, half, f->acceleration, count);
@@ -195,7 +195,7 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Fi
         for (int d = 0; d < Dim; ++d) {
             sim.particles.velocity.components[d] = start.components[Dim + d];
         }
-        f->density.components[0] = start.components[2 * Dim];
+        f->density.components[0] = start.components.back();
         add_scaled<Dim>(sim.particles.velocity, sim.time_step, f->acceleration, count);
         add_scaled<1>(f->density, sim.time_step, rate, count);
     });
