@@ -3,6 +3,7 @@
 #include "sphvv/solver/snapshots/snapshot.hpp"
 #include "sphvv/solver/snapshots/xdmf.hpp"
 #include "sphvv/solver/storage/hdf5.hpp"
+#include "sphvv/solver/tests/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -29,16 +30,14 @@
 #include <unistd.h>
 #include <vector>
 
-/// For -fsanitize=address: the HDF5 library (1.10.8) does not free all when it gives up on a damaged file.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
-extern "C" const char* __lsan_default_suppressions() { // NOLINT(bugprone-reserved-identifier)
-    return "leak:libhdf5";
-}
-
 namespace {
 
 using namespace sphvv::solver;
 using sphvv::UserError;
+using sphvv::tests::content;
+using sphvv::tests::expect_mentions;
+using sphvv::tests::put;
+using sphvv::tests::refusal;
 using storage::Group;
 using storage::open_hdf5;
 using storage::write_hdf5;
@@ -46,45 +45,10 @@ namespace fs = std::filesystem;
 
 const Assignments metadata{{"case", "vortices"}, {"n", "16"}};
 
-/// A folder that goes with the test.
-class Snapshots : public testing::Test {
+class Snapshots : public sphvv::tests::TemporaryFolder {
 protected:
-    Snapshots() {
-        std::string pattern = (fs::temp_directory_path() / "sphvv-snapshots-XXXXXX").string();
-        folder = ::mkdtemp(pattern.data());
-        path = folder / "s.h5";
-    }
-    ~Snapshots() override { fs::remove_all(folder); }
-
-    fs::path folder, path;
+    const fs::path path = folder / "s.h5";
 };
-
-std::string content(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void put(const fs::path& file, std::string_view bytes) {
-    std::ofstream(file, std::ios::binary) << bytes;
-}
-
-template <class Act>
-std::string refusal(Act&& act) {
-    try {
-        act();
-    } catch (const UserError& error) {
-        return error.what();
-    }
-    ADD_FAILURE() << "not refused";
-    return {};
-}
-
-void expect_mentions(const std::string& message, std::initializer_list<std::string_view> parts) {
-    for (const std::string_view part : parts) {
-        EXPECT_NE(message.find(part), std::string::npos) << '"' << message << "\" does not mention " << part;
-    }
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
 
 /// Decaying vortices from a jittered lattice in the periodic unit box.
 template <int Dim>

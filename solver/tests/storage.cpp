@@ -2,6 +2,7 @@
 #include "sphvv/solver/storage/hdf5.hpp"
 #include "sphvv/solver/storage/text.hpp"
 #include "sphvv/solver/storage/write_atomically.hpp"
+#include "sphvv/solver/tests/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -20,60 +21,20 @@
 #include <utility>
 #include <vector>
 
-/// For -fsanitize=address: the HDF5 library (1.10.8) does not free all when it gives up on a damaged file.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
-extern "C" const char* __lsan_default_suppressions() { // NOLINT(bugprone-reserved-identifier)
-    return "leak:libhdf5";
-}
-
 namespace {
 
 using namespace sphvv::solver::storage;
 using sphvv::UserError;
+using sphvv::tests::content;
+using sphvv::tests::expect_mentions;
+using sphvv::tests::put;
+using sphvv::tests::refusal;
 namespace fs = std::filesystem;
 
-/// A folder that goes with the test.
-class Storage : public testing::Test {
-protected:
-    Storage() {
-        std::string pattern = (fs::temp_directory_path() / "sphvv-storage-XXXXXX").string();
-        folder = ::mkdtemp(pattern.data());
-    }
-    ~Storage() override { fs::remove_all(folder); }
-
-    fs::path folder;
-};
-
-std::string content(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void put(const fs::path& path, std::string_view bytes) {
-    std::ofstream(path, std::ios::binary) << bytes;
-}
+using Storage = sphvv::tests::TemporaryFolder;
 
 std::size_t entries(const fs::path& folder) {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-/// The message of the UserError that `act` ends with.
-template <class Act>
-std::string refusal(Act&& act) {
-    try {
-        act();
-    } catch (const UserError& error) {
-        return error.what();
-    }
-    ADD_FAILURE() << "not refused";
-    return {};
-}
-
-void expect_mentions(const std::string& message, std::initializer_list<std::string_view> parts) {
-    for (const std::string_view part : parts) {
-        EXPECT_NE(message.find(part), std::string::npos) << '"' << message << "\" does not mention " << part;
-    }
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
 /// Lets no file of this process grow beyond some bytes: what a full disk does, without one.

@@ -2,6 +2,7 @@
 
 #include "sphvv/solver/error.hpp"
 #include "sphvv/solver/storage/hdf5.hpp"
+#include "sphvv/solver/tests/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,12 +23,6 @@
 #include <unistd.h>
 #include <vector>
 
-/// For -fsanitize=address: the HDF5 library (1.10.8) does not free all when it gives up on a damaged file.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
-extern "C" const char* __lsan_default_suppressions() { // NOLINT(bugprone-reserved-identifier)
-    return "leak:libhdf5";
-}
-
 namespace {
 
 using namespace sphvv::verification;
@@ -35,6 +30,10 @@ using sphvv::UserError;
 using sphvv::solver::storage::Group;
 using sphvv::solver::storage::open_hdf5;
 using sphvv::solver::storage::write_hdf5;
+using sphvv::tests::content;
+using sphvv::tests::expect_mentions;
+using sphvv::tests::put;
+using sphvv::tests::refusal;
 namespace fs = std::filesystem;
 
 #ifndef SPHVV_DAMAGE_TRIALS
@@ -43,50 +42,15 @@ namespace fs = std::filesystem;
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
-/// A folder that goes with the test.
-class Results : public testing::Test {
+class Results : public sphvv::tests::TemporaryFolder {
 protected:
-    Results() {
-        std::string pattern = (fs::temp_directory_path() / "sphvv-results-XXXXXX").string();
-        folder = ::mkdtemp(pattern.data());
-        path = folder / "r.h5";
-    }
-    ~Results() override { fs::remove_all(folder); }
-
     ResultTree round_trip(const ResultTree& tree) const {
         write_results_hdf5(tree, path);
         return read_results_hdf5(path);
     }
 
-    fs::path folder, path;
+    const fs::path path = folder / "r.h5";
 };
-
-std::string content(const fs::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void put(const fs::path& file, std::string_view bytes) {
-    std::ofstream(file, std::ios::binary) << bytes;
-}
-
-template <class Error, class Act>
-std::string message_of(Act&& act) {
-    try {
-        act();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    ADD_FAILURE() << "not refused";
-    return {};
-}
-
-void expect_mentions(const std::string& message, std::initializer_list<std::string_view> parts) {
-    for (const std::string_view part : parts) {
-        EXPECT_NE(message.find(part), std::string::npos) << '"' << message << "\" does not mention " << part;
-    }
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-}
 
 /// Text that differs with any value, any kind of number, and any order of array entries, but not with the
 /// order of an object's members.
@@ -231,8 +195,7 @@ TEST_F(Results, RejectsWhatTheFormatHasNoPlaceFor) {
           R"({"a/b": {}})", R"({"a": {"": 1}})", R"({"a": {".": []}})", R"({"a": {"_list": "x"}})",
           R"({"a": {"_booleans": 1}})", R"({"a\u0000b": 1})", R"({"a": [{"b/c": 1}]})"}) {
         const ResultTree tree = with_header(ResultTree::parse(member));
-        const std::string message =
-            message_of<std::invalid_argument>([&] { write_results_hdf5(tree, path); });
+        const std::string message = refusal<std::invalid_argument>([&] { write_results_hdf5(tree, path); });
         expect_mentions(message, {"/a"});
         EXPECT_FALSE(fs::exists(path)) << member;
     }
@@ -377,7 +340,7 @@ TEST_F(Results, RandomTreesComeBack) {
 
 TEST_F(Results, SaysWhyAFileIsNoResultFile) {
     const auto reading = [](const fs::path& file) {
-        return message_of<UserError>([&] { read_results_hdf5(file); });
+        return refusal<UserError>([&] { read_results_hdf5(file); });
     };
     expect_mentions(reading(path), {path.string(), "does not exist"});
     expect_mentions(reading(folder), {"folder"});
@@ -408,7 +371,7 @@ TEST_F(Results, SaysWhatInAFileContradictsTheFormat) {
             root.set_attribute<std::int64_t>("format_version", 1);
             fill(root.create_group("g"));
         });
-        return message_of<UserError>([&] { read_results_hdf5(path); });
+        return refusal<UserError>([&] { read_results_hdf5(path); });
     };
     const std::vector<double> numbers{1, 2, 3, 4};
     const std::span<const double> all(numbers);
@@ -437,7 +400,7 @@ TEST_F(Results, AFullDiskLeavesNothing) {
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{2000, before.rlim_max};
     ::setrlimit(RLIMIT_FSIZE, &limit);
-    const std::string message = message_of<UserError>([&] { write_results_hdf5(complete(), path); });
+    const std::string message = refusal<UserError>([&] { write_results_hdf5(complete(), path); });
     ::setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
     expect_mentions(message, {path.string(), "cannot be written"});
@@ -449,7 +412,7 @@ TEST_F(Results, NoTruncatedFileIsRead) {
     const std::string whole = content(path);
     for (std::size_t length = 0; length < whole.size(); length += length < 200 ? 1 : 131) {
         put(path, whole.substr(0, length));
-        expect_mentions(message_of<UserError>([&] { read_results_hdf5(path); }), {path.string()});
+        expect_mentions(refusal<UserError>([&] { read_results_hdf5(path); }), {path.string()});
     }
 }
 
@@ -514,13 +477,13 @@ TEST_F(Results, ACompleteFilePasses) {
 std::string fault_after(const std::string& pointer, const ResultTree& value, const fs::path& path) {
     ResultTree tree = complete();
     tree[ResultTree::json_pointer(pointer)] = value;
-    return message_of<UserError>([&] { check_result_file(tree, path); });
+    return refusal<UserError>([&] { check_result_file(tree, path); });
 }
 
 std::string fault_without(const std::string& pointer, const std::string& name, const fs::path& path) {
     ResultTree tree = complete();
     EXPECT_EQ(tree.at(ResultTree::json_pointer(pointer)).erase(name), 1U) << name;
-    return message_of<UserError>([&] { check_result_file(tree, path); });
+    return refusal<UserError>([&] { check_result_file(tree, path); });
 }
 
 TEST_F(Results, AMissingMemberIsNamed) {
@@ -540,7 +503,7 @@ TEST_F(Results, AMissingMemberIsNamed) {
     }
     expect_mentions(fault_without("", "format", path), {"not a result file"});
     expect_mentions(fault_without("", "format_version", path), {"format_version"});
-    expect_mentions(message_of<UserError>([&] { check_result_file(ResultTree::array(), path); }),
+    expect_mentions(refusal<UserError>([&] { check_result_file(ResultTree::array(), path); }),
                     {"not a result file"});
 }
 
