@@ -16,6 +16,6 @@ install(FILES ${PROJECT_BINARY_DIR}/sphvvConfig.cmake ${PROJECT_BINARY_DIR}/sphv
 # Installs into a scratch folder, then configures, builds and runs a program of somebody else's against it.
 add_test(NAME cli.find_package
          COMMAND ${CMAKE_COMMAND} -DBUILD=${PROJECT_BINARY_DIR} -DCONSUMER=${PROJECT_SOURCE_DIR}/cmake/consumer
-                 -DSCRATCH=${PROJECT_BINARY_DIR}/consumer -DCXX=${CMAKE_CXX_COMPILER}
+                 -DSCRATCH=${PROJECT_BINARY_DIR}/consumer -DGENERATOR=${CMAKE_GENERATOR} -DCXX=${CMAKE_CXX_COMPILER}
                  -P ${PROJECT_SOURCE_DIR}/cmake/consumer/run.cmake)
 set_tests_properties(cli.find_package PROPERTIES LABELS cli)

@@ -41,6 +41,9 @@ std::vector<Key> case_keys(const Case& c) {
 
 bool applies(std::span<const Condition> conditions, const solver::Settings& settings) {
     return std::all_of(conditions.begin(), conditions.end(), [&](const Condition& condition) {
+        if (!condition.word.empty()) {
+            return settings.word(condition.key) == condition.word;
+        }
         const double value = settings.number(condition.key);
         return value >= condition.low && value <= condition.high;
     });

@@ -18,11 +18,12 @@ namespace sphvv::verification {
 enum class Tier { quick, nightly, full };
 std::string_view to_string(Tier tier);
 
-/// "The number set under `key` lies in [low, high]."
+/// "The number set under `key` lies in [low, high]", or, with `word`, "the word set under `key` is this one".
 struct Condition {
     std::string key;
     double low;
     double high;
+    std::string word{};
 };
 
 /// What one scheme is expected to do on a case, wherever all conditions hold.

@@ -12,7 +12,7 @@ const Case& abc_flow() {
         .solution = "abc_flow",
         .reference_length = "length",
         .leading_key = "re",
-        .end_time = 0.2,
+        .end_time = 0.25,
         .expectations =
             {
                 {.scheme = "isph_dfs",
@@ -24,8 +24,11 @@ const Case& abc_flow() {
                  .text = "the forward Euler velocity step leaves an error of O(dt), and dt = 0.2 h/U; the "
                          "smoothing error of a "
                          "coarse 3-D ladder falls faster, so the order comes down to 1 from above",
-                 .waiver = "on 8 to 32^3 the order falls from 3.5 to 1: not asymptotic, finer rungs are not "
-                           "run yet"},
+                 .waiver =
+                     "the pairwise order falls from 3.5 (8^3) to 0.97, 0.92 and 0.90 (32 to 64^3) "
+                     "and leaves the band by a hair; at a fixed dt the error grows as h^-0.4 from 32^3 on, "
+                     "with either Laplacian, so it is the shifts (their number, and R, grow with n) "
+                     "that hold the order under the 1 of forward Euler: open, see the schemes to come"},
             },
         .claims = {},
         .studies =
@@ -35,13 +38,13 @@ const Case& abc_flow() {
                  .schemes = {"wcsph", "isph_dfs"},
                  .settings = {{"re", "100"}},
                  .ladder = {8, 11, 16, 23, 32},
-                 .cost = "20 s"},
+                 .cost = "25 s"},
                 {.name = "abc_flow/fine",
                  .tier = Tier::nightly,
                  .schemes = {"wcsph", "isph_dfs"},
                  .settings = {{"re", "100"}},
                  .ladder = {16, 23, 32, 45, 64},
-                 .cost = "3 min"},
+                 .cost = "5 min"},
             },
     };
     return flow;

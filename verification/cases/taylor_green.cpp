@@ -11,6 +11,9 @@ constexpr double any = 1e300;
 const std::string first_order_source =
     "Xu 2009 §4.3.2: about 1, criterion >= 0.9; forward Euler with dt proportional to h";
 
+const Expected zeroth_order{std::nullopt, 0.5,
+                            "Quinlan, Basa & Lastiwka 2006; verification rules §4: order -1 of the operator"};
+
 std::vector<Expectation> expectations() {
     return {
         {.scheme = "isph_dfs",
@@ -33,10 +36,18 @@ std::vector<Expectation> expectations() {
                  "away, out of the support",
          .ends_early = true},
         {.scheme = "wcsph",
+         .field = "",
+         .where = {{"re", 100, 1e4}, {"arrangement", 0, 0, "jittered"}},
+         .order = zeroth_order,
+         .text = "as from the lattice: the error of the symmetric gradient does not fall with h",
+         .waiver = "from a jittered start single pairs pass below 0.25 dx (0.22 dx; with either integrator, "
+                   "h/dx 1.3 and 1.6, background pressure 0 and 0.5) in some seeds of most rungs, where |W'| "
+                   "falls again towards r = 0 and hardly repels (Xu sheet §1.2); with minimum_spacing=0.05 "
+                   "the runs go on to errors of 47 and 34 % at 20^2 and 40^2"},
+        {.scheme = "wcsph",
          .field = "velocity",
          .where = {{"re", 100, 1e4}},
-         .order = {std::nullopt, 0.5,
-                   "Quinlan, Basa & Lastiwka 2006; verification rules §4: order -1 of the operator"},
+         .order = zeroth_order,
          .text = "the symmetric pressure gradient on disordered particles at fixed h/dx has an error that "
                  "does not fall with "
                  "h, so the flow's error levels off; below 0.5 it is nearer to that than to the first order "

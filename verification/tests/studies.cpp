@@ -157,6 +157,14 @@ TEST(Verdicts, WaiverIsPrintedWithTheFailure) {
     EXPECT_EQ(document["studies"][0]["fit"]["verdict"], "FAIL");
 }
 
+// A waiver for one start arrangement must not reach the others.
+TEST(Verdicts, AConditionOnAWordHoldsForThatWordOnly) {
+    const Case& flow = cases::find("taylor_green");
+    const solver::Settings jittered(case_keys(flow), {{"arrangement", "jittered"}});
+    EXPECT_FALSE(find_expectation(flow, "wcsph", "velocity", jittered)->waiver.empty());
+    EXPECT_TRUE(find_expectation(flow, "wcsph", "velocity", settings_of(flow))->waiver.empty());
+}
+
 // Non-convergence that theory predicts passes, but never reads as accuracy.
 TEST(Verdicts, ExpectedStagnationIsNamed) {
     const FieldStudy study = judged(synthetic_runs("wcsph", ladder, [](double) { return 0.77; }), "wcsph");
@@ -193,7 +201,7 @@ TEST(Cases, EveryExpectationHasBandReasonAndSource) {
             EXPECT_EQ(e.ends_early, !e.order.low && !e.order.high);
             EXPECT_NO_THROW(solver::schemes::find(e.scheme));
             for (const Condition& condition : e.where) {
-                EXPECT_NO_THROW(settings_of(*flow).number(condition.key));
+                EXPECT_NO_THROW(applies({&condition, 1}, settings_of(*flow)));
             }
         }
     }
