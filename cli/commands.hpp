@@ -21,6 +21,7 @@ void add_common(CLI::App& command, Common& common);
 using Act = std::function<int()>;
 void add_list(CLI::App& app, Act& act);
 void add_run(CLI::App& app, Act& act);
+void add_operators(CLI::App& app, Act& act, const std::string& command_line);
 void add_verify(CLI::App& app, Act& act, const std::string& command_line);
 void add_report(CLI::App& app, Act& act);
 

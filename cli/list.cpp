@@ -1,4 +1,5 @@
 #include "sphvv/analytic/solutions.hpp"
+#include "sphvv/solver/operators.hpp"
 #include "sphvv/solver/schemes.hpp"
 #include "sphvv/verification/cases.hpp"
 
@@ -70,6 +71,16 @@ Entries studies() {
     return entries;
 }
 
+Entries operators() {
+    Entries entries = entries_of(solver::operators::all());
+    for (Entries& entry : entries) {
+        const solver::Operator& op = solver::operators::find(entry["name"].get<std::string>());
+        entry["formula"] = op.formula;
+        entry["approximates"] = to_string(op.approximates);
+    }
+    return entries;
+}
+
 struct Subject {
     const char* name;
     Entries (*entries)();
@@ -77,11 +88,9 @@ struct Subject {
 
 const std::vector<Subject>& subjects() {
     static const std::vector<Subject> all{
-        {"cases", cases},
-        {"schemes", schemes},
-        {"kernels", [] { return entries_of(solver::kernels::all()); }},
-        {"studies", studies},
-        {"solutions", [] { return entries_of(analytic::solutions::all()); }},
+        {"cases", cases},         {"schemes", schemes},
+        {"operators", operators}, {"kernels", [] { return entries_of(solver::kernels::all()); }},
+        {"studies", studies},     {"solutions", [] { return entries_of(analytic::solutions::all()); }},
     };
     return all;
 }
@@ -131,7 +140,7 @@ void add_list(CLI::App& app, Act& act) {
     }
     command
         ->add_option("subject", options->subject,
-                     "cases, schemes, kernels, studies or solutions; all if left out")
+                     "cases, schemes, operators, kernels, studies or solutions; all if left out")
         ->check(CLI::IsMember(names));
     add_common(*command, options->common);
     command->footer("Example: sphvv list schemes --json -");

@@ -67,8 +67,8 @@ int answer(int argc, char** argv) {
                "--out report");
     cli::Act act;
     cli::add_list(app, act);
-
     cli::add_run(app, act);
+    cli::add_operators(app, act, command_line);
     cli::add_verify(app, act, command_line);
     cli::add_report(app, act);
     const auto commands = app.get_subcommands({});

@@ -15,10 +15,17 @@ struct Kernel {
     std::string_view source;
     double support;                      ///< q beyond which f vanishes
     std::array<double, 4> normalisation; ///< C_dim, dim = 1, 2, 3 (entry 0 unused)
+    /// Number of continuous derivatives of W in space, the least of those at r = 0, inside and at the edge of
+    /// the support; -1 for a value that jumps. An odd power |r|^k has only k - 1 of them at r = 0, however
+    /// smooth f(q) is: a cone (f'(0) < 0) has smoothness 0.
+    int smoothness;
+    /// Whether the Fourier transform of W is nowhere negative, dim = 1, 2, 3 (entry 0 unused): what
+    /// Dehnen & Aly 2012 demand lest particles pair. It depends on the dimension.
+    std::array<bool, 4> nonnegative_transform;
     double (*f)(double q);
-    double (*derivative)(double q); ///< f'(q)
-    /// slope[k] = scale f'(q)/q with q = sqrt(squared_distance[k])/h; finite at r = 0 and zero outside the
-    /// support.
+    double (*derivative)(double q); ///< f'(q); at q = 0 the limit from q > 0
+    /// slope[k] = scale f'(q)/q with q = sqrt(squared_distance[k])/h; finite at r = 0 (0 where f'(q)/q has no
+    /// limit) and zero outside the support.
     void (*slopes)(std::span<const double> squared_distance, double h, double scale, double* slope);
 
     /// W(r) in `dim` dimensions, 1/m^dim.

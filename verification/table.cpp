@@ -1,51 +1,12 @@
 #include "sphvv/verification/table.hpp"
 
 #include "sphvv/verification/claims.hpp"
+#include "sphvv/verification/markdown_table.hpp"
 
 #include <cmath>
 
 namespace sphvv::verification {
 namespace {
-
-/// A Markdown table with its columns aligned, so that it reads well on a terminal too.
-class Table {
-public:
-    explicit Table(std::vector<std::string> header) { rows_.push_back(std::move(header)); }
-    void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
-
-    std::string text() const {
-        std::vector<std::size_t> width(rows_[0].size(), 3);
-        for (const auto& row : rows_) {
-            for (std::size_t c = 0; c < row.size(); ++c) {
-                width[c] = std::max(width[c], visible(row[c]));
-            }
-        }
-        std::string out;
-        for (std::size_t r = 0; r < rows_.size(); ++r) {
-            for (std::size_t c = 0; c < rows_[r].size(); ++c) {
-                out += "| " + std::string(width[c] - visible(rows_[r][c]), ' ') + rows_[r][c] + " ";
-            }
-            out += "|\n";
-            if (r == 0) {
-                for (const std::size_t w : width) {
-                    out += "|" + std::string(w + 1, '-') + ":";
-                }
-                out += "|\n";
-            }
-        }
-        return out;
-    }
-
-private:
-    /// Characters of a UTF-8 text.
-    static std::size_t visible(const std::string& text) {
-        return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-            return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-        }));
-    }
-
-    std::vector<std::vector<std::string>> rows_;
-};
 
 const std::string dash = "–";
 
@@ -61,8 +22,8 @@ std::string band(const Expected& expected) {
 }
 
 std::string study_table(const FieldStudy& study) {
-    Table table({"n", "h", "dx", "N", "Δt", "steps", "L1", "order", "L2", "order", "L∞", "order", "seconds",
-                 "pair evaluations"});
+    MarkdownTable table({"n", "h", "dx", "N", "Δt", "steps", "L1", "order", "L2", "order", "L∞", "order",
+                         "seconds", "pair evaluations"});
     for (std::size_t k = 0; k < study.samples.size(); ++k) {
         const Sample& s = study.samples[k];
         std::vector<std::string> row{std::to_string(s.n),         number(s.h, "%.4g"),
@@ -105,7 +66,7 @@ std::string study_table(const FieldStudy& study) {
 }
 
 std::string front_table(const std::vector<Front>& fronts) {
-    Table table({"field", "cost", "scheme", "front", "slower by", "at error", "than"});
+    MarkdownTable table({"field", "cost", "scheme", "front", "slower by", "at error", "than"});
     for (const Front& front : fronts) {
         for (const FrontRow& row : front.rows) {
             table.add({front.field, front.cost == "seconds" ? "seconds" : "pair evaluations", row.name,
@@ -147,7 +108,7 @@ std::string markdown(const LadderResult& result) {
     }
     out += "### error against cost, L2\n\n" + front_table(result.fronts) + "\n";
     if (!result.claims.empty()) {
-        Table table({"claim", "what", "published", "ours", "agrees"});
+        MarkdownTable table({"claim", "what", "published", "ours", "agrees"});
         for (const ClaimFinding& c : result.claims) {
             table.add({c.claim->id, c.claim->text, c.claim->published, c.finding.ours,
                        c.finding.agrees ? "yes" : "NO"});

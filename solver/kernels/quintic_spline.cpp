@@ -37,6 +37,8 @@ const Kernel& quintic_spline() {
         .source = "Xu 2009 §2.1.1; 2-D constant 7/(478 pi h^2)",
         .support = 3,
         .normalisation = {0, 1.0 / 120, 7 / (478 * std::numbers::pi), 1 / (120 * std::numbers::pi)},
+        .smoothness = 4,
+        .nonnegative_transform = {false, true, false, false},
         .f = Profile::f,
         .derivative = Profile::derivative,
         .slopes = kernel_slopes<Profile>,

@@ -30,6 +30,8 @@ const Kernel& wendland_c2() {
                   "integrates to 2/3",
         .support = 2,
         .normalisation = {0, 3.0 / 4, 7 / (4 * std::numbers::pi), 21 / (16 * std::numbers::pi)},
+        .smoothness = 2,
+        .nonnegative_transform = {false, true, true, true},
         .f = Profile::f,
         .derivative = Profile::derivative,
         .slopes = kernel_slopes<Profile>,

@@ -43,6 +43,18 @@ Vector<Dim> laplacian_morris(const Row<Dim>& row, int i, const std::array<const 
     return lane_sums<Dim>(total);
 }
 
+/// LM of a scalar.
+template <int Dim, class Volume>
+double laplacian_morris_scalar(const Row<Dim>& row, int i, const double* A, const Volume& volume,
+                               double eta_squared) {
+    Lanes total{};
+    for (int k = 0; k < row.padded; k += lane_count) {
+        total += 2 * volume(row.index + k) * regularised_slope<Dim>(row, k, eta_squared) *
+                 (A[i] - gather(A, row.index + k));
+    }
+    return sum(total);
+}
+
 /// The same operator as a matrix: weights w_ij >= 0 with -Laplacian A_i = sum_j w_ij (A_i - A_j). Returns
 /// sum_j w_ij.
 template <int Dim, class Volume>

@@ -4,16 +4,14 @@
 
 #include <Eigen/LU>
 
-#include <cmath>
+#include <optional>
 
 namespace sphvv::solver {
 
-/// L_i = [sum_j V_j (r_j - r_i) (x) gradW_ij]^-1 (pure number, symmetric), which makes a difference gradient
-/// exact for linear fields. Source: Xu 2009 §2.1.2; Oger 2007. Where the neighbours do not span the space
-/// (determinant under 1e-6, against 1 in a full support) there is nothing to normalise by, and the identity
-/// is returned.
+/// M_i = sum_j V_j (r_j - r_i) (x) gradW_ij (pure number, symmetric, positive semidefinite), near the
+/// identity in a full support.
 template <int Dim, class Volume>
-Matrix<Dim> renormalisation(const Row<Dim>& row, const Volume& volume) {
+Matrix<Dim> first_moments(const Row<Dim>& row, const Volume& volume) {
     std::array<Lanes, Dim*(Dim + 1) / 2> moments{};
     for (int k = 0; k < row.padded; k += lane_count) {
         const Lanes weight = -volume(row.index + k) * load(row.slope + k);
@@ -30,10 +28,29 @@ Matrix<Dim> renormalisation(const Row<Dim>& row, const Volume& volume) {
             M(a, b) = M(b, a) = sum(moments[m]);
         }
     }
-    if (!(std::abs(M.determinant()) > 1e-6)) {
-        return Matrix<Dim>::Identity();
+    return M;
+}
+
+/// L_i = M_i^-1, which makes a difference gradient exact for linear fields. Source: Xu 2009 §2.1.2; Oger
+/// 2007. Nothing where the neighbours do not span the space, or only just: det M below 1e-6 (tr M/dim)^dim,
+/// whatever the size of M, so that cond L stays below 1e6 (2-D; 1e7 in 3-D).
+template <int Dim, class Volume>
+std::optional<Matrix<Dim>> determined_renormalisation(const Row<Dim>& row, const Volume& volume) {
+    const Matrix<Dim> M = first_moments<Dim>(row, volume);
+    double scale = 1;
+    for (int d = 0; d < Dim; ++d) {
+        scale *= M.trace() / Dim;
+    }
+    if (!(M.determinant() > 1e-6 * scale)) {
+        return std::nullopt;
     }
     return M.inverse();
+}
+
+/// L_i, or the identity where the neighbours do not determine it: what a scheme does with a stray particle.
+template <int Dim, class Volume>
+Matrix<Dim> renormalisation(const Row<Dim>& row, const Volume& volume) {
+    return determined_renormalisation<Dim>(row, volume).value_or(Matrix<Dim>::Identity());
 }
 
 /// S_i = sum_j V_j gradW_ij (1/m), zero in a full regular support.

@@ -1,0 +1,32 @@
+#include "sphvv/solver/operators.hpp"
+#include "sphvv/solver/operators/gradient_sigma.hpp"
+
+namespace sphvv::solver::operators {
+namespace {
+
+struct Formula {
+    template <int Dim>
+    static Vector<Dim> at(const Row<Dim>& row, int i, const OperatorInput<Dim>& in) {
+        return gradient_sigma<Dim, 2>(row, i, in.field[0], in.density, in.V);
+    }
+};
+
+} // namespace
+
+const Operator& gradient_sigma_2() {
+    static const Operator op = with_formula<Formula>({
+        .name = "gradient_sigma_2",
+        .summary = "symmetric gradient of the sigma family, sigma = 2",
+        .formula = "rho_i sum_j m_j (A_i/rho_i^2 + A_j/rho_j^2) gradW_ij",
+        .source = "Oger et al. 2007, sigma = 2; Monaghan 1992; Lee 2008 §1.3",
+        .approximates = Approximates::gradient,
+        .claims = {.conserves_momentum = true},
+        .order = {.noise_power = 2,
+                  .truncated = -1,
+                  .source = "as the symmetric gradient: zeroth moment times the field (verification rules "
+                            "§4; Quinlan, Basa & Lastiwka 2006)"},
+    });
+    return op;
+}
+
+} // namespace sphvv::solver::operators

@@ -1,0 +1,39 @@
+#include "sphvv/solver/operators.hpp"
+
+namespace sphvv::solver::operators {
+namespace {
+
+struct Formula {
+    template <int Dim>
+    static double at(const Row<Dim>& row, int i, const OperatorInput<Dim>& in) {
+        double total = in.V[i] * in.kernel->f(0);
+        for (int k = 0; k < row.count; ++k) {
+            double r2 = 0;
+            for (int d = 0; d < Dim; ++d) {
+                r2 += row.separation[d][k] * row.separation[d][k];
+            }
+            total += in.V[row.index[k]] * in.kernel->f(std::sqrt(r2) / in.h);
+        }
+        return in.kernel->value(Dim, 0, in.h) / in.kernel->f(0) * total;
+    }
+};
+
+} // namespace
+
+const Operator& summation_density() {
+    static const Operator op = with_formula<Formula>({
+        .name = "summation_density",
+        .summary = "sum of the kernel over all particles, the particle itself included",
+        .formula = "sum_j V_j W_ij",
+        .source = "Gingold & Monaghan 1977; Asai 2012 (particle density)",
+        .approximates = Approximates::unity,
+        .claims = {},
+        .order = {.noise_power = 1,
+                  .truncated = 0,
+                  .source = "W has the size of h^-dim, the noise that of its first differences (verification "
+                            "rules §4; Quinlan, Basa & Lastiwka 2006)"},
+    });
+    return op;
+}
+
+} // namespace sphvv::solver::operators

@@ -1,0 +1,542 @@
+#include "sphvv/verification/operator_fields.hpp"
+#include "sphvv/verification/operator_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace sphvv::verification {
+namespace {
+
+using solver::Approximates;
+using solver::Operator;
+
+/// Bounds on relative errors of sums that are zero or exact but for round-off: a few hundred terms of either
+/// sign, and for the inverse of a moment matrix its condition number on top (on these arrangements below 1e3;
+/// below 1e6 for the normal matrices of the polynomials).
+constexpr double round_off = 1e-12;
+constexpr double renormalised_round_off = 1e-10;
+constexpr double polynomial_round_off = 1e-8;
+/// A polynomial beyond the claimed degree must be missed by more than this.
+constexpr double clearly_wrong = 1e-6;
+
+template <int Dim>
+constexpr int spacings = Dim == 2 ? 16 : 10;
+
+/// Polynomial with coefficients for all monomials up to a degree, drawn uniformly from [-1, 1].
+template <int Dim>
+class Polynomial {
+public:
+    Polynomial(int degree, std::mt19937_64& generator) {
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        std::array<int, Dim> power{};
+        const int each = degree + 1;
+        int combinations = 1;
+        for (int d = 0; d < Dim; ++d) {
+            combinations *= each;
+        }
+        for (int c = 0; c < combinations; ++c) {
+            int rest = c;
+            int total = 0;
+            for (int d = 0; d < Dim; ++d) {
+                power[d] = rest % each;
+                total += power[d];
+                rest /= each;
+            }
+            if (total <= degree) {
+                terms_.push_back({power, uniform(generator)});
+            }
+        }
+    }
+
+    /// The derivative of the given multiplicity along every direction, at x.
+    double derivative(const solver::Vector<Dim>& x, const std::array<int, Dim>& times) const {
+        double sum = 0;
+        for (const Term& term : terms_) {
+            double product = term.coefficient;
+            for (int d = 0; d < Dim; ++d) {
+                int exponent = term.power[d];
+                for (int t = 0; t < times[d]; ++t) {
+                    product *= exponent--;
+                }
+                product *= exponent < 0 ? 0 : std::pow(x[d], exponent);
+            }
+            sum += product;
+        }
+        return sum;
+    }
+
+private:
+    struct Term {
+        std::array<int, Dim> power;
+        double coefficient;
+    };
+    std::vector<Term> terms_;
+};
+
+template <int Dim>
+using Polynomials = std::vector<Polynomial<Dim>>; // one a component
+
+template <int Dim>
+std::array<int, Dim> once(int a) {
+    std::array<int, Dim> times{};
+    ++times[a];
+    return times;
+}
+template <int Dim>
+std::array<int, Dim> once(int a, int b) {
+    std::array<int, Dim> times{};
+    ++times[a];
+    ++times[b];
+    return times;
+}
+
+template <int Dim>
+double laplacian(const Polynomial<Dim>& A, const solver::Vector<Dim>& x) {
+    double sum = 0;
+    for (int a = 0; a < Dim; ++a) {
+        sum += A.derivative(x, once<Dim>(a, a));
+    }
+    return sum;
+}
+
+/// What the operator approximates, of polynomials.
+template <int Dim>
+std::vector<double> exact(Approximates kind, const Polynomials<Dim>& u, const solver::Vector<Dim>& x) {
+    std::vector<double> result(solver::result_components(kind, Dim), 0);
+    switch (kind) {
+    case Approximates::gradient:
+        for (int a = 0; a < Dim; ++a) {
+            result[a] = u[0].derivative(x, once<Dim>(a));
+        }
+        break;
+    case Approximates::divergence:
+        for (int a = 0; a < Dim; ++a) {
+            result[0] += u[a].derivative(x, once<Dim>(a));
+        }
+        break;
+    case Approximates::laplacian:
+        result[0] = laplacian<Dim>(u[0], x);
+        break;
+    case Approximates::vector_laplacian:
+    case Approximates::viscous:
+        for (int a = 0; a < Dim; ++a) {
+            result[a] = laplacian<Dim>(u[a], x);
+            for (int b = 0; b < Dim && kind == Approximates::viscous; ++b) {
+                result[a] += 2 * u[b].derivative(x, once<Dim>(a, b));
+            }
+        }
+        break;
+    case Approximates::vector_gradient:
+    case Approximates::strain_rate:
+        for (int a = 0, c = 0; a < Dim; ++a) {
+            for (int b = 0; b < Dim; ++b, ++c) {
+                result[c] = kind == Approximates::vector_gradient
+                                ? u[a].derivative(x, once<Dim>(b))
+                                : (u[a].derivative(x, once<Dim>(b)) + u[b].derivative(x, once<Dim>(a))) / 2;
+            }
+        }
+        break;
+    case Approximates::unity:
+        result[0] = 1;
+        break;
+    case Approximates::dimension:
+        result[0] = Dim;
+        break;
+    case Approximates::nothing:
+        break;
+    }
+    return result;
+}
+
+/// Every check of one operator in one dimension.
+template <int Dim>
+class Checker {
+public:
+    Checker(const Operator& op, const solver::Kernel& kernel) : op_(op), kernel_(kernel) {}
+
+    std::vector<PropertyCheck> all() {
+        const bool has_field = solver::field_components(op_.approximates, Dim) > 0;
+        const solver::OperatorClaims& claims = op_.claims;
+        if (has_field && op_.approximates != Approximates::nothing) {
+            exactness();
+        }
+        if (claims.conserves_momentum) {
+            momentum();
+        }
+        if (!claims.adjoint.empty()) {
+            adjointness();
+        }
+        if (claims.symmetric) {
+            symmetry();
+        }
+        if (claims.nonpositive) {
+            sign();
+        }
+        if (claims.dissipates) {
+            dissipation();
+        }
+        if (op_.approximates == Approximates::laplacian) {
+            checkerboard();
+        }
+        if (claims.vanishes_on_lattices) {
+            lattices();
+        }
+        rotation();
+        line_of_particles();
+        return std::move(checks_);
+    }
+
+private:
+    using Field = std::array<std::vector<double>, Dim>;
+    using Columns = std::vector<std::vector<double>>;
+
+    void record(const std::string& property, const std::string& arrangement, double value, double bound,
+                bool at_least = false) {
+        // A value that is not a number passes neither way.
+        const bool passes = at_least ? value >= bound : value <= bound;
+        checks_.push_back(
+            {std::string(op_.name), Dim, property, arrangement, value, bound, at_least, passes});
+    }
+
+    OperatorScene<Dim> scene(ParticleSet<Dim> set, double h_over_dx = 1.3) const {
+        const double h = h_over_dx * set.dx;
+        return OperatorScene<Dim>(std::move(set), kernel_, h);
+    }
+    OperatorScene<Dim> periodic() const {
+        OperatorScene<Dim> made = scene(particle_set<Dim>(Arrangement::jittered_20, spacings<Dim>, 0, 7));
+        std::mt19937_64 generator(8);
+        std::uniform_real_distribution<double> uniform(0.7, 1.3); // unequal volumes and densities
+        for (int i = 0; i < made.set.size(); ++i) {
+            made.set.volume[i] *= uniform(generator);
+            made.density[i] = uniform(generator);
+        }
+        return made;
+    }
+    /// A block with free sides, edges and corners.
+    OperatorScene<Dim> block(Arrangement arrangement, double h_over_dx) const {
+        ParticleSet<Dim> set = particle_set<Dim>(arrangement, spacings<Dim>, 0, 9);
+        set.box.periodic.fill(false);
+        return scene(std::move(set), h_over_dx);
+    }
+
+    double tolerance() const {
+        if (op_.claims.exact_degree <= 0) {
+            return round_off;
+        }
+        return op_.claims.exact_degree == 1 ? renormalised_round_off : polynomial_round_off;
+    }
+
+    static void randomise(Field& field, std::uint64_t seed) {
+        std::mt19937_64 generator(seed);
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        for (std::vector<double>& column : field) {
+            for (double& value : column) {
+                value = uniform(generator);
+            }
+        }
+    }
+
+    static void fill(OperatorScene<Dim>& scene, const Polynomials<Dim>& u) {
+        for (int i = 0; i < scene.set.size(); ++i) {
+            for (int d = 0; d < Dim; ++d) {
+                scene.field[d][i] = u[d].derivative(scene.point(i), {});
+            }
+        }
+    }
+
+    static Polynomials<Dim> polynomials(int degree, std::uint64_t seed) {
+        std::mt19937_64 generator(seed);
+        Polynomials<Dim> u;
+        for (int d = 0; d < Dim; ++d) {
+            u.emplace_back(degree, generator);
+        }
+        return u;
+    }
+
+    /// Largest error over the largest size that the terms of the sums have, A/dx or A/dx^2 with A the largest
+    /// value of the field; undetermined particles are passed over, unless there are no others.
+    double polynomial_error(OperatorScene<Dim> scene, int degree) const {
+        const Polynomials<Dim> u = polynomials(degree, 31);
+        fill(scene, u);
+        const bool second = op_.approximates == Approximates::laplacian ||
+                            op_.approximates == Approximates::vector_laplacian ||
+                            op_.approximates == Approximates::viscous;
+        double size = 0;
+        for (const std::vector<double>& column : scene.field) {
+            for (const double value : column) {
+                size = std::max(size, std::abs(value));
+            }
+        }
+        size /= second ? scene.set.dx * scene.set.dx : scene.set.dx;
+        const Columns found = scene.apply(op_);
+        double worst = 0;
+        int determined = 0;
+        for (int i = 0; i < scene.set.size(); ++i) {
+            if (std::isnan(found[0][i])) {
+                continue;
+            }
+            ++determined;
+            const std::vector<double> reference = exact<Dim>(op_.approximates, u, scene.point(i));
+            for (std::size_t c = 0; c < found.size(); ++c) {
+                const double error = std::abs(found[c][i] - reference[c]) / size;
+                worst = error <= worst ? worst : error; // keeps not-a-number
+            }
+        }
+        return determined > 0 ? worst : std::nan("");
+    }
+
+    void exactness() {
+        const int degree = op_.claims.exact_degree;
+        const std::array names{"constants", "linears", "quadratics", "cubics"};
+        for (const auto& [arrangement, h_over_dx] :
+             {std::pair{Arrangement::jittered_20, 1.3}, std::pair{Arrangement::random, 2.0}}) {
+            const std::string where = std::string(to_string(arrangement)) + ", free sides";
+            for (int p = 0; p <= degree; ++p) {
+                record(std::string("exact for ") + names[p], where,
+                       polynomial_error(block(arrangement, h_over_dx), p), tolerance());
+            }
+        }
+        if (degree < 3) {
+            record(std::string("not exact for ") + names[degree + 1], "jittered 20 %, free sides",
+                   polynomial_error(block(Arrangement::jittered_20, 1.3), degree + 1), clearly_wrong, true);
+        }
+    }
+
+    void momentum() {
+        OperatorScene<Dim> made = periodic();
+        randomise(made.field, 41);
+        const Columns found = made.apply(op_);
+        double total = 0;
+        double size = 0;
+        for (const std::vector<double>& column : found) {
+            double sum = 0;
+            for (int i = 0; i < made.set.size(); ++i) {
+                sum += made.set.volume[i] * column[i];
+                size += std::abs(made.set.volume[i] * column[i]);
+            }
+            total = std::max(total, std::abs(sum));
+        }
+        record("sum V O = 0", "jittered 20 %, unequal volumes", total / size, round_off);
+    }
+
+    static double product(const OperatorScene<Dim>& scene, const Columns& a, const Field& b, double& size) {
+        double sum = 0;
+        for (std::size_t c = 0; c < a.size(); ++c) {
+            for (int i = 0; i < scene.set.size(); ++i) {
+                const double term = scene.set.volume[i] * a[c][i] * b[c][i];
+                sum += term;
+                size += std::abs(term);
+            }
+        }
+        return sum;
+    }
+
+    void adjointness() {
+        OperatorScene<Dim> made = periodic();
+        randomise(made.field, 42);
+        const Field scalar = made.field;
+        const Columns gradient = made.apply(op_);
+        randomise(made.field, 43);
+        const Field vector = made.field;
+        const Columns divergence = made.apply(solver::operators::find(op_.claims.adjoint));
+        double size = 0;
+        const double sum = product(made, gradient, vector, size) + product(made, divergence, scalar, size);
+        record("adjoint of -" + std::string(op_.claims.adjoint), "jittered 20 %, unequal volumes",
+               std::abs(sum) / size, renormalised_round_off);
+    }
+
+    void symmetry() {
+        OperatorScene<Dim> made = periodic();
+        randomise(made.field, 44);
+        const Field a = made.field;
+        const Columns of_a = made.apply(op_);
+        randomise(made.field, 45);
+        const Columns of_b = made.apply(op_);
+        double size = 0;
+        const double difference = product(made, of_a, made.field, size) - product(made, of_b, a, size);
+        record("symmetric matrix", "jittered 20 %, unequal volumes", std::abs(difference) / size, round_off);
+    }
+
+    void sign() {
+        double largest = -1;
+        for (std::uint64_t seed = 46; seed < 50; ++seed) {
+            OperatorScene<Dim> made = periodic();
+            randomise(made.field, seed);
+            double size = 0;
+            const double sum = product(made, made.apply(op_), made.field, size);
+            largest = std::max(largest, sum / size);
+        }
+        record("sum V A O A <= 0", "jittered 20 %, unequal volumes", largest, 0);
+    }
+
+    void dissipation() {
+        sign();
+        // Rotation: u = omega x r has no approaching pairs but for rounding.
+        OperatorScene<Dim> made = block(Arrangement::jittered_20, 1.3);
+        randomise(made.field, 50);
+        const double ordinary = largest(made.apply(op_));
+        for (int i = 0; i < made.set.size(); ++i) {
+            made.field[0][i] = -made.set.points[1][i];
+            made.field[1][i] = made.set.points[0][i];
+            for (int d = 2; d < Dim; ++d) {
+                made.field[d][i] = 0;
+            }
+        }
+        record("zero for a rigid rotation", "jittered 20 %, free sides", largest(made.apply(op_)) / ordinary,
+               round_off);
+    }
+
+    static double largest(const Columns& columns) {
+        double result = 0;
+        for (const std::vector<double>& column : columns) {
+            for (const double value : column) {
+                result = std::abs(value) <= result ? result : std::abs(value);
+            }
+        }
+        return result;
+    }
+
+    void checkerboard() {
+        OperatorScene<Dim> made = scene(particle_set<Dim>(Arrangement::square, spacings<Dim>, 0, 0));
+        for (int i = 0; i < made.set.size(); ++i) {
+            long cells = 0;
+            for (int d = 0; d < Dim; ++d) {
+                cells += std::lround(made.set.points[d][i] / made.set.dx - 0.5);
+            }
+            made.field[0][i] = cells % 2 == 0 ? 1 : -1;
+        }
+        const double response = largest(made.apply(op_)) * made.set.dx * made.set.dx;
+        if (op_.claims.sees_checkerboard) {
+            record("answers a checkerboard, O A dx^2", "square", response, 0.1, true);
+        } else {
+            record("blind to a checkerboard, O A dx^2", "square", response, renormalised_round_off);
+        }
+    }
+
+    void lattices() {
+        for (const Arrangement arrangement : {Arrangement::square, Arrangement::hexagonal}) {
+            OperatorScene<Dim> made = scene(particle_set<Dim>(arrangement, spacings<Dim>, 0, 0));
+            record("zero on a lattice", std::string(to_string(arrangement)), largest(made.apply(op_)), 1e-10);
+        }
+    }
+
+    /// O of rotated particles and fields is the rotated O (scalars stay, vectors and tensors turn).
+    void rotation() {
+        // Away from right angles, about the middle of a box with room for the corners.
+        const double angle = 0.7;
+        solver::Matrix<Dim> R = solver::Matrix<Dim>::Identity();
+        R(0, 0) = R(1, 1) = std::cos(angle);
+        R(1, 0) = std::sin(angle);
+        R(0, 1) = -R(1, 0);
+        OperatorScene<Dim> before = block(Arrangement::jittered_20, 1.3);
+        ParticleSet<Dim> turned = before.set;
+        turned.box.low.fill(-1);
+        turned.box.high.fill(2);
+        for (int i = 0; i < turned.size(); ++i) {
+            const solver::Vector<Dim> middle = solver::Vector<Dim>::Constant(0.5);
+            const solver::Vector<Dim> x = middle + R * (before.point(i) - middle);
+            for (int d = 0; d < Dim; ++d) {
+                turned.points[d][i] = x[d];
+            }
+        }
+        OperatorScene<Dim> after(std::move(turned), kernel_, before.h);
+        randomise(before.field, 51);
+        const bool scalar_field = solver::field_components(op_.approximates, Dim) == 1;
+        for (int i = 0; i < before.set.size(); ++i) {
+            solver::Vector<Dim> u;
+            for (int d = 0; d < Dim; ++d) {
+                u[d] = before.field[d][i];
+            }
+            const solver::Vector<Dim> turned_u = scalar_field ? u : solver::Vector<Dim>(R * u);
+            for (int d = 0; d < Dim; ++d) {
+                after.field[d][i] = turned_u[d];
+            }
+        }
+        const Columns found = after.apply(op_);
+        const Columns unturned = before.apply(op_);
+        const double size = largest(unturned);
+        double worst = 0;
+        for (int i = 0; i < before.set.size(); ++i) {
+            const std::vector<double> expected = turn(unturned, i, R);
+            for (std::size_t c = 0; c < found.size(); ++c) {
+                const double error = std::abs(found[c][i] - expected[c]) / size;
+                worst = error <= worst ? worst : error;
+            }
+        }
+        record("commutes with a rotation", "jittered 20 %, free sides", worst,
+               std::max(tolerance(), renormalised_round_off));
+    }
+
+    static std::vector<double> turn(const Columns& columns, int i, const solver::Matrix<Dim>& R) {
+        std::vector<double> result;
+        if (columns.size() == 1) {
+            result.push_back(columns[0][i]);
+        } else if (columns.size() == Dim) {
+            for (int a = 0; a < Dim; ++a) {
+                double sum = 0;
+                for (int b = 0; b < Dim; ++b) {
+                    sum += R(a, b) * columns[b][i];
+                }
+                result.push_back(sum);
+            }
+        } else {
+            solver::Matrix<Dim> T;
+            for (int c = 0; c < Dim * Dim; ++c) {
+                T(c / Dim, c % Dim) = columns[c][i];
+            }
+            const solver::Matrix<Dim> turned = R * T * R.transpose();
+            for (int c = 0; c < Dim * Dim; ++c) {
+                result.push_back(turned(c / Dim, c % Dim));
+            }
+        }
+        return result;
+    }
+
+    /// On a line nothing across it is known: an operator that is exact for linears must say that it is
+    /// undetermined, and no operator may answer with an infinite value.
+    void line_of_particles() {
+        ParticleSet<Dim> set;
+        set.box.high.fill(1);
+        set.dx = 1.0 / spacings<Dim>;
+        for (int i = 0; i < spacings<Dim>; ++i) {
+            for (int d = 0; d < Dim; ++d) {
+                set.points[d].push_back(d == 0 ? (i + 0.5) * set.dx : 0.5);
+            }
+            set.volume.push_back(std::pow(set.dx, Dim));
+        }
+        OperatorScene<Dim> made = scene(std::move(set));
+        fill(made, polynomials(2, 52));
+        const Columns found = made.apply(op_);
+        int undetermined = 0;
+        int infinite = 0;
+        for (int i = 0; i < made.set.size(); ++i) {
+            undetermined += std::isnan(found[0][i]) ? 1 : 0;
+            for (const std::vector<double>& column : found) {
+                infinite += std::isinf(column[i]) ? 1 : 0;
+            }
+        }
+        if (op_.claims.exact_degree >= 1) {
+            record("says that it is undetermined", "a line of particles", undetermined, made.set.size(),
+                   true);
+        } else {
+            record("stays finite or says that it is undetermined", "a line of particles", infinite, 0);
+        }
+    }
+
+    const Operator& op_;
+    const solver::Kernel& kernel_;
+    std::vector<PropertyCheck> checks_;
+};
+
+} // namespace
+
+std::vector<PropertyCheck> check_properties(const Operator& op, const solver::Kernel& kernel) {
+    std::vector<PropertyCheck> checks = Checker<2>(op, kernel).all();
+    std::vector<PropertyCheck> in_three = Checker<3>(op, kernel).all();
+    std::move(in_three.begin(), in_three.end(), std::back_inserter(checks));
+    return checks;
+}
+
+} // namespace sphvv::verification

@@ -1,0 +1,362 @@
+#include "sphvv/verification/operator_study.hpp"
+
+#include "sphvv/verification/operator_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace sphvv::verification {
+namespace {
+
+using solver::Approximates;
+using solver::Operator;
+
+constexpr double joint_power = 0.5; ///< h ~ dx^s
+constexpr double half_width = 0.25; ///< of an order band: half of theory's smallest step, see expected_order
+constexpr int seeds_of_random = 5;  ///< rules of evidence §3
+
+double smoothing_length(const OperatorLadder& ladder, int n) {
+    const double coarsest_dx = 1.0 / ladder.n.front();
+    const double dx = 1.0 / n;
+    switch (ladder.path) {
+    case Path::fixed_ratio:
+        return ladder.coarsest_h_over_dx * dx;
+    case Path::fixed_h:
+        return ladder.coarsest_h_over_dx * coarsest_dx;
+    case Path::joint:
+        break;
+    }
+    return ladder.coarsest_h_over_dx * coarsest_dx * std::pow(dx / coarsest_dx, joint_power);
+}
+
+/// What one operator gave on one scene.
+struct Judged {
+    std::optional<Norms> norms;
+    std::size_t particles = 0;
+    int undetermined = 0;
+};
+
+/// Norms of values - factor * exact over the judged particles that the neighbours determine.
+template <int Dim>
+Judged hold_against_exact(const OperatorScene<Dim>& scene, const PlaneWave<Dim>& wave, const Operator& op,
+                          double factor) {
+    const std::vector<std::vector<double>> found = scene.apply(op);
+    std::vector<std::vector<double>> value(found.size());
+    std::vector<std::vector<double>> reference(found.size());
+    std::vector<double> volume;
+    Judged judged;
+    for (const int i : scene.set.judged) {
+        if (std::isnan(found[0][i])) {
+            ++judged.undetermined;
+            continue;
+        }
+        const std::vector<double> exact = wave.exact(op.approximates, scene.point(i));
+        for (std::size_t c = 0; c < found.size(); ++c) {
+            value[c].push_back(found[c][i]);
+            reference[c].push_back(factor * exact[c]);
+        }
+        volume.push_back(scene.set.volume[i]);
+    }
+    judged.particles = volume.size();
+    if (!volume.empty()) {
+        const std::vector<std::span<const double>> values(value.begin(), value.end());
+        const std::vector<std::span<const double>> references(reference.begin(), reference.end());
+        judged.norms = vector_norms(values, references, volume);
+    }
+    return judged;
+}
+
+/// Factor that the operator puts in front of the exact result as dx -> 0 at this h: it takes a plane wave on
+/// a lattice to a multiple of the exact result, and on a lattice this fine its sums are integrals.
+template <int Dim>
+double limit_factor(const Operator& op, const solver::Kernel& kernel, double h) {
+    constexpr double h_over_dx = Dim == 2 ? 5 : 3;
+    const int n = static_cast<int>(std::ceil(h_over_dx / h));
+    OperatorScene<Dim> scene(particle_set<Dim>(Arrangement::square, n, 0, 0), kernel, h);
+    const PlaneWave<Dim> wave(scene.set.box);
+    wave.fill(scene);
+    std::fill(scene.density.begin(), scene.density.end(), 1.0);
+    const std::vector<std::vector<double>> found = scene.apply(op);
+    double product = 0;
+    double square = 0;
+    for (const int i : scene.set.judged) {
+        const std::vector<double> exact = wave.exact(op.approximates, scene.point(i));
+        for (std::size_t c = 0; c < exact.size(); ++c) {
+            product += found[c][i] * exact[c];
+            square += exact[c] * exact[c];
+        }
+    }
+    return product / square;
+}
+
+double geometric_mean(const std::vector<Norms>& norms, double Norms::*member) {
+    double total = 0;
+    for (const Norms& each : norms) {
+        total += std::log(each.*member);
+    }
+    return std::exp(total / static_cast<double>(norms.size()));
+}
+
+OperatorSample sample_of(const std::vector<Judged>& seeds, int n, double h, double pairs) {
+    OperatorSample sample{n, h, 1.0 / n, 0, {}, 0, static_cast<int>(seeds.size()), 0, pairs};
+    std::vector<Norms> norms;
+    for (const Judged& judged : seeds) {
+        sample.particles += judged.particles / seeds.size();
+        sample.undetermined += judged.undetermined;
+        if (judged.norms) {
+            norms.push_back(*judged.norms);
+        }
+    }
+    if (norms.size() == seeds.size()) {
+        Norms mean = norms.front();
+        if (norms.size() > 1) {
+            for (double Norms::*member :
+                 {&Norms::l1, &Norms::l2, &Norms::linf, &Norms::l1_abs, &Norms::l2_abs, &Norms::linf_abs}) {
+                mean.*member = geometric_mean(norms, member);
+            }
+        }
+        sample.norms = mean;
+        const auto [low, high] = std::minmax_element(
+            norms.begin(), norms.end(), [](const Norms& a, const Norms& b) { return a.l2 < b.l2; });
+        sample.l2_spread = low->l2 > 0 ? high->l2 / low->l2 - 1 : 0;
+    }
+    return sample;
+}
+
+std::vector<double> pairwise(const std::vector<OperatorSample>& samples, double Norms::*member) {
+    std::vector<double> orders(samples.size(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t k = 1; k < samples.size(); ++k) {
+        if (samples[k - 1].norms && samples[k].norms) {
+            orders[k] = std::log((*samples[k - 1].norms).*member / (*samples[k].norms).*member) /
+                        std::log(samples[k - 1].dx / samples[k].dx);
+        }
+    }
+    return orders;
+}
+
+void judge_study(OperatorStudy& study, const std::vector<Rung>& rungs) {
+    study.order_l1 = pairwise(study.samples, &Norms::l1);
+    study.order_l2 = pairwise(study.samples, &Norms::l2);
+    study.order_linf = pairwise(study.samples, &Norms::linf);
+    const auto lost = std::find_if(study.samples.begin(), study.samples.end(),
+                                   [](const OperatorSample& sample) { return !sample.norms; });
+    if (lost != study.samples.end()) {
+        study.verdict = "FAIL";
+        study.reason = "no particle of n = " + std::to_string(lost->n) + " determines the operator";
+        return;
+    }
+    const double undetermined =
+        std::accumulate(study.samples.begin(), study.samples.end(), 0.0,
+                        [](double sum, const OperatorSample& sample) { return sum + sample.undetermined; });
+    if (undetermined > 0 && study.ladder.arrangement != Arrangement::random) {
+        study.verdict = "FAIL";
+        study.reason = "the neighbours of some particles do not determine the operator";
+        return;
+    }
+    if (!study.expected) {
+        study.verdict = "NONE";
+        study.reason = "no order follows from the declaration: observed only";
+        return;
+    }
+    const Judgement judgement = judge(rungs, *study.expected);
+    study.verdict = to_string(judgement.verdict);
+    study.reason = judgement.reason;
+    study.fit = judgement.fit;
+}
+
+template <int Dim>
+std::vector<OperatorStudy> run_ladder(std::span<const Operator* const> operators,
+                                      const OperatorLadder& ladder, const solver::Kernel& kernel,
+                                      const std::function<void(int n)>& tell) {
+    std::vector<OperatorStudy> studies;
+    std::vector<std::vector<Rung>> rungs(operators.size());
+    std::vector<double> factor(operators.size(), 1);
+    for (std::size_t o = 0; o < operators.size(); ++o) {
+        studies.push_back({operators[o],
+                           ladder,
+                           std::string(kernel.name),
+                           expected_order(*operators[o], ladder),
+                           {},
+                           {},
+                           {},
+                           {},
+                           {},
+                           {},
+                           {}});
+        if (ladder.path == Path::fixed_h) {
+            factor[o] = limit_factor<Dim>(*operators[o], kernel, smoothing_length(ladder, ladder.n.front()));
+        }
+    }
+    for (const int n : ladder.n) {
+        const double h = smoothing_length(ladder, n);
+        std::vector<std::vector<Judged>> judged(operators.size());
+        double pairs = 0;
+        for (int seed = 1; seed <= ladder.seeds; ++seed) {
+            OperatorScene<Dim> scene(particle_set<Dim>(ladder.arrangement, n, kernel.support * h,
+                                                       static_cast<std::uint64_t>(seed)),
+                                     kernel, h);
+            const PlaneWave<Dim> wave(scene.set.box);
+            wave.fill(scene);
+            if (ladder.path == Path::fixed_h) {
+                std::fill(scene.density.begin(), scene.density.end(), 1.0); // as in limit_factor
+            }
+            pairs += static_cast<double>(scene.neighbours.pairs()) / ladder.seeds;
+            for (std::size_t o = 0; o < operators.size(); ++o) {
+                judged[o].push_back(hold_against_exact<Dim>(scene, wave, *operators[o], factor[o]));
+            }
+        }
+        for (std::size_t o = 0; o < operators.size(); ++o) {
+            studies[o].samples.push_back(sample_of(judged[o], n, h, operators[o]->sweeps * pairs));
+            Rung rung{1.0 / n, {}};
+            for (const Judged& each : judged[o]) {
+                rung.errors.push_back(each.norms ? each.norms->l2 : std::numeric_limits<double>::quiet_NaN());
+            }
+            rungs[o].push_back(rung);
+        }
+        tell(n);
+    }
+    for (std::size_t o = 0; o < operators.size(); ++o) {
+        judge_study(studies[o], rungs[o]);
+    }
+    return studies;
+}
+
+Expected around(double low, double high, const std::string& source) {
+    return {low - half_width, high + half_width, source};
+}
+
+} // namespace
+
+std::string_view to_string(Path path) {
+    switch (path) {
+    case Path::fixed_ratio:
+        return "h/dx fixed";
+    case Path::fixed_h:
+        return "h fixed";
+    case Path::joint:
+        break;
+    }
+    return "h ~ sqrt(dx)";
+}
+
+std::optional<Expected> expected_order(const Operator& op, const OperatorLadder& ladder) {
+    if (op.approximates == Approximates::nothing) {
+        return std::nullopt;
+    }
+    const bool without_field = solver::field_components(op.approximates, 2) == 0;
+    const solver::OrderModel& model = op.order;
+    const double d = ladder.dimension;
+    const double irregular = 1 - model.noise_power;
+    const std::string source(model.source);
+    if (ladder.path == Path::fixed_h) {
+        const double order = ladder.arrangement == Arrangement::random ? d / 2 : 1 + d / 2;
+        return around(order, order, "quadrature noise at fixed h: " + source);
+    }
+    if (ladder.path == Path::joint) {
+        const double noise = 1 + d / 2 - joint_power * (model.noise_power + d / 2);
+        const double smoothing = joint_power * model.smoothing;
+        const double low = without_field ? noise : std::min(noise, smoothing);
+        const double high = model.transition && !without_field ? std::max(noise, smoothing) : low;
+        return around(low, high, "the slower of noise and smoothing: " + source);
+    }
+    if (is_truncated(ladder.arrangement)) {
+        return around(model.truncated, model.truncated, "truncated support: " + source);
+    }
+    if (is_lattice(ladder.arrangement)) {
+        const double order = without_field ? 0 : model.smoothing;
+        return around(model.lattice_floor ? 0 : order, order,
+                      "even kernel on a symmetric support" + (model.lattice_floor ? "; " + source : ""));
+    }
+    if (ladder.arrangement == Arrangement::polar) {
+        // Rings are a lattice bent ever less, but for their common centre, whose share of the area falls as
+        // dx^2.
+        const double centre = irregular + 1;
+        return around(irregular, without_field ? centre : std::max(centre, model.smoothing),
+                      "between the defect at the centre and the smoothing error: " + source);
+    }
+    const bool weak = ladder.arrangement == Arrangement::settled || model.transition;
+    const double high = weak && !without_field ? model.smoothing : irregular;
+    return around(irregular, std::max(irregular, high), source);
+}
+
+std::vector<OperatorLadder> operator_ladders(std::string_view tier) {
+    const std::vector<int> regular{16, 20, 28, 40, 56, 80};
+    const std::vector<int> disordered{40, 56, 80, 112, 160};
+    const std::vector<int> truncated{160, 226, 320, 453, 640};
+    std::vector<OperatorLadder> ladders{
+        {2, Arrangement::square, Path::fixed_ratio, regular, 2, 1},
+        {2, Arrangement::hexagonal, Path::fixed_ratio, regular, 2, 1},
+        {2, Arrangement::jittered_5, Path::fixed_ratio, {80, 112, 160, 224, 320}, 1.3, seeds_of_random},
+        {2, Arrangement::jittered_10, Path::fixed_ratio, disordered, 1.3, seeds_of_random},
+        {2, Arrangement::jittered_20, Path::fixed_ratio, disordered, 1.3, seeds_of_random},
+        {2, Arrangement::settled, Path::fixed_ratio, {40, 60, 80, 120, 160}, 1.3, seeds_of_random},
+        {2, Arrangement::polar, Path::fixed_ratio, disordered, 1.3, seeds_of_random},
+        {2, Arrangement::random, Path::fixed_ratio, disordered, 2, seeds_of_random},
+        {2, Arrangement::edge, Path::fixed_ratio, truncated, 1.3, 1},
+        {2, Arrangement::corner, Path::fixed_ratio, truncated, 1.3, 1},
+        {2, Arrangement::jittered_20, Path::fixed_h, {30, 40, 60, 80, 120}, 1.5, seeds_of_random},
+        {2, Arrangement::jittered_20, Path::joint, disordered, 1.3, seeds_of_random},
+    };
+    if (tier == "quick") {
+        return ladders;
+    }
+    for (OperatorLadder& ladder : ladders) {
+        if (ladder.n == disordered) {
+            ladder.n = {40, 80, 160, 240, 320};
+        }
+    }
+    ladders.push_back({2, Arrangement::random, Path::fixed_h, {30, 40, 60, 80, 120}, 2, seeds_of_random});
+    const std::vector<int> regular3{14, 20, 28, 40, 56};
+    const std::vector<int> disordered3{16, 23, 32, 45, 64};
+    for (const Arrangement arrangement : {Arrangement::square, Arrangement::hexagonal}) {
+        ladders.push_back({3, arrangement, Path::fixed_ratio, regular3, 1.5, 1});
+    }
+    for (const Arrangement arrangement :
+         {Arrangement::jittered_5, Arrangement::jittered_10, Arrangement::jittered_20, Arrangement::polar,
+          Arrangement::random}) {
+        ladders.push_back({3, arrangement, Path::fixed_ratio, disordered3, 1.3, seeds_of_random});
+    }
+    ladders.push_back(
+        {3, Arrangement::settled, Path::fixed_ratio, {10, 20, 30, 40, 60}, 1.3, seeds_of_random});
+    for (const Arrangement arrangement : {Arrangement::edge, Arrangement::corner}) {
+        ladders.push_back({3, arrangement, Path::fixed_ratio, truncated, 1.3, 1});
+    }
+    ladders.push_back(
+        {3, Arrangement::jittered_20, Path::fixed_h, {10, 14, 20, 28, 40}, 1.3, seeds_of_random});
+    ladders.push_back({3, Arrangement::jittered_20, Path::joint, disordered3, 1.3, seeds_of_random});
+    return ladders;
+}
+
+std::vector<OperatorStudy> run_operator_studies(std::span<const Operator* const> operators,
+                                                std::span<const OperatorLadder> ladders,
+                                                const solver::Kernel& kernel,
+                                                const OperatorProgress& progress) {
+    std::vector<const Operator*> with_limit;
+    std::copy_if(operators.begin(), operators.end(), std::back_inserter(with_limit),
+                 [](const Operator* op) { return op->approximates != Approximates::nothing; });
+    std::vector<OperatorStudy> studies;
+    std::size_t rungs = 0;
+    for (const OperatorLadder& ladder : ladders) {
+        rungs += ladder.n.size();
+    }
+    std::size_t done = 0;
+    for (const OperatorLadder& ladder : ladders) {
+        const auto tell = [&](int n) {
+            ++done;
+            if (progress) {
+                progress(std::to_string(ladder.dimension) + "-D " +
+                             std::string(to_string(ladder.arrangement)) + ", " +
+                             std::string(to_string(ladder.path)) + ", n = " + std::to_string(n),
+                         static_cast<double>(done) / static_cast<double>(rungs));
+            }
+        };
+        auto found = ladder.dimension == 2 ? run_ladder<2>(with_limit, ladder, kernel, tell)
+                                           : run_ladder<3>(with_limit, ladder, kernel, tell);
+        std::move(found.begin(), found.end(), std::back_inserter(studies));
+    }
+    return studies;
+}
+
+} // namespace sphvv::verification
