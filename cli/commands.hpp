@@ -24,6 +24,8 @@ void add_run(CLI::App& app, Act& act);
 void add_operators(CLI::App& app, Act& act, const std::string& command_line);
 void add_verify(CLI::App& app, Act& act, const std::string& command_line);
 void add_report(CLI::App& app, Act& act);
+void add_compare(CLI::App& app, Act& act);
+void add_bless(CLI::App& app, Act& act);
 
 /// KEY=VALUE texts as assignments. Throws UserError for other forms and for a key given twice.
 solver::Assignments parse_assignments(const std::vector<std::string>& texts);

@@ -71,6 +71,8 @@ int answer(int argc, char** argv) {
     cli::add_operators(app, act, command_line);
     cli::add_verify(app, act, command_line);
     cli::add_report(app, act);
+    cli::add_compare(app, act);
+    cli::add_bless(app, act);
     const auto commands = app.get_subcommands({});
     if (argc > 1 && argv[1][0] != '-' &&
         std::none_of(commands.begin(), commands.end(),

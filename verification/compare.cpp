@@ -1,0 +1,427 @@
+#include "sphvv/verification/compare.hpp"
+
+#include "sphvv/solver/error.hpp"
+#include "sphvv/verification/claims.hpp"
+#include "sphvv/verification/markdown_table.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace sphvv::verification {
+namespace {
+
+constexpr double round_off_of_operators = 1e-6;
+constexpr double round_off_of_schemes = 1e-2;
+constexpr double work_tolerance = 0.01;
+constexpr double least_order_change = 0.05;
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+
+constexpr std::array error_names{"l1", "l2", "linf"};
+constexpr std::array work_names{"steps", "pair_evaluations", "solver_iterations", "matrix_entries",
+                                "undetermined"};
+/// Lists of checks, the members that identify one, and the one that says whether it is as it must be.
+struct CheckList {
+    const char* name;
+    std::vector<const char*> identity;
+    const char* passes;
+};
+const std::vector<CheckList>& check_lists() {
+    static const std::vector<CheckList> lists{
+        {"operator_properties", {"operator", "dimension", "arrangement", "property"}, "passes"},
+        {"kernel_checks", {"kernel", "dimension", "check"}, "passes"},
+        {"known_errors", {"kernel", "dimension", "check", "why"}, "passes"},
+        {"published_figures", {"id"}, "agrees"},
+    };
+    return lists;
+}
+const std::vector<const char*> operator_identity{"operator", "dimension", "arrangement",
+                                                 "path",     "kernel",    "tier"};
+const std::vector<const char*> scheme_identity{"scheme", "group", "field", "tier"};
+
+std::string text_of(const ResultTree& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+const ResultTree& member(const ResultTree& tree, const char* name) {
+    static const ResultTree nothing;
+    return tree.is_object() && tree.contains(name) ? tree.at(name) : nothing;
+}
+
+double number_of(const ResultTree& tree, const char* name) {
+    const ResultTree& value = member(tree, name);
+    return value.is_number() ? value.get<double>() : nan_value;
+}
+
+/// The first member, and the others put together.
+std::pair<std::string, std::string> identity_of(const ResultTree& entry,
+                                                const std::vector<const char*>& names) {
+    std::string where;
+    for (std::size_t k = 1; k < names.size(); ++k) {
+        where += (where.empty() ? "" : ", ") + text_of(member(entry, names[k])) +
+                 (std::string_view(names[k]) == "dimension" ? "-D" : "");
+    }
+    return {text_of(member(entry, names[0])), where};
+}
+
+std::string verdict_of(const ResultTree& study) {
+    const ResultTree& fit = member(study, "fit");
+    return text_of(member(fit, "verdict")) + (member(fit, "waiver").is_string() ? " (waived)" : "");
+}
+
+/// Everything that is compared, by identity.
+struct Contents {
+    struct Study {
+        std::string subject, where;
+        const ResultTree* tree;
+        bool of_operator;
+        std::map<long, const ResultTree*> rungs;
+    };
+    struct Check {
+        std::string subject, where;
+        const ResultTree* tree;
+        const CheckList* list;
+    };
+    std::map<std::string, Study> studies;
+    std::map<std::string, Check> checks;
+};
+
+void collect_studies(const ResultTree& tree, const char* list, const std::vector<const char*>& identity,
+                     Contents& contents) {
+    for (const ResultTree& study : member(tree, list)) {
+        const auto [subject, where] = identity_of(study, identity);
+        Contents::Study entry{subject, where, &study, &identity == &operator_identity, {}};
+        for (const ResultTree& sample : member(study, "samples")) {
+            entry.rungs[static_cast<long>(number_of(sample, "n"))] = &sample;
+        }
+        contents.studies.emplace(subject + "|" + where, std::move(entry));
+    }
+}
+
+Contents contents_of(const ResultTree& tree) {
+    Contents contents;
+    collect_studies(tree, "operator_studies", operator_identity, contents);
+    collect_studies(tree, "studies", scheme_identity, contents);
+    for (const CheckList& list : check_lists()) {
+        for (const ResultTree& check : member(tree, list.name)) {
+            const auto [subject, where] = identity_of(check, list.identity);
+            contents.checks.emplace(std::string(list.name) + "|" + subject + "|" + where,
+                                    Contents::Check{subject, where, &check, &list});
+        }
+    }
+    return contents;
+}
+
+class Comparer {
+public:
+    Comparison run(const Contents& baseline, const Contents& current) {
+        bool common = false;
+        for (const auto& [key, before] : baseline.studies) {
+            const auto after = current.studies.find(key);
+            if (after == current.studies.end()) {
+                note(Change::missing, before.subject, before.where, "study", "there", "not there");
+                continue;
+            }
+            common = true;
+            compare_study(before, after->second);
+        }
+        for (const auto& [key, before] : baseline.checks) {
+            const auto after = current.checks.find(key);
+            if (after == current.checks.end()) {
+                note(Change::missing, before.subject, before.where, "check", "there", "not there");
+                continue;
+            }
+            common = true;
+            compare_check(before, after->second);
+        }
+        if (!common) {
+            throw UserError("the two results have no study in common, so there is nothing to compare");
+        }
+        for (const auto& [key, after] : current.studies) {
+            if (!baseline.studies.contains(key)) {
+                note(Change::added, after.subject, after.where, "study", "not there", "there");
+            }
+        }
+        for (const auto& [key, after] : current.checks) {
+            if (!baseline.checks.contains(key)) {
+                note(Change::added, after.subject, after.where, "check", "not there", "there");
+            }
+        }
+        return std::move(result_);
+    }
+
+private:
+    void note(Change change, const std::string& subject, const std::string& where, const std::string& what,
+              const std::string& before, const std::string& after, double factor = 1) {
+        result_.differences.push_back({change, subject, where, what, before, after, factor});
+    }
+
+    /// One number; `otherwise` is the change if it is more than `tolerance`.
+    void compare_number(const Contents::Study& study, long n, const char* name, double before, double after,
+                        double tolerance, Change otherwise) {
+        ++result_.compared;
+        if (before == after || (std::isnan(before) && std::isnan(after))) {
+            ++result_.bitwise;
+            return;
+        }
+        const double factor = after / before;
+        const bool close = std::abs(after - before) <= tolerance * std::abs(before);
+        note(close ? Change::round_off : otherwise, study.subject, study.where + ", n = " + std::to_string(n),
+             name, number(before, "%.4g"), number(after, "%.4g"), factor);
+    }
+
+    void compare_word(Change change, const std::string& subject, const std::string& where,
+                      const std::string& what, const std::string& before, const std::string& after) {
+        ++result_.compared;
+        if (before == after) {
+            ++result_.bitwise;
+            return;
+        }
+        note(change, subject, where, what, before, after);
+    }
+
+    void compare_study(const Contents::Study& before, const Contents::Study& after) {
+        compare_word(Change::verdict, before.subject, before.where, "verdict", verdict_of(*before.tree),
+                     verdict_of(*after.tree));
+        const ResultTree& fit_before = member(*before.tree, "fit");
+        const ResultTree& fit_after = member(*after.tree, "fit");
+        const double change = std::abs(number_of(fit_after, "order") - number_of(fit_before, "order"));
+        const double allowed =
+            std::max(least_order_change, number_of(fit_before, "ci95") + number_of(fit_after, "ci95"));
+        if (change > allowed) {
+            note(Change::order, before.subject, before.where, "order",
+                 number(number_of(fit_before, "order"), "%.3f"),
+                 number(number_of(fit_after, "order"), "%.3f"));
+        }
+        const double round_off = before.of_operator ? round_off_of_operators : round_off_of_schemes;
+        for (const auto& [n, rung] : before.rungs) {
+            const auto found = after.rungs.find(n);
+            if (found == after.rungs.end()) {
+                note(Change::missing, before.subject, before.where, "n = " + std::to_string(n), "there",
+                     "not there");
+                continue;
+            }
+            for (const char* name : error_names) {
+                compare_number(before, n, name, number_of(*rung, name), number_of(*found->second, name),
+                               round_off, Change::error_level);
+            }
+            for (const char* name : work_names) {
+                compare_number(before, n, name, number_of(*rung, name), number_of(*found->second, name),
+                               work_tolerance, Change::work);
+            }
+            compare_seconds(before, n, number_of(*rung, "seconds"), number_of(*found->second, "seconds"));
+        }
+    }
+
+    void compare_seconds(const Contents::Study& study, long n, double before, double after) {
+        constexpr double noticeable = 1.5;
+        const double factor = after / before;
+        if (factor > noticeable || factor < 1 / noticeable) {
+            note(Change::run_time, study.subject, study.where + ", n = " + std::to_string(n), "seconds",
+                 number(before, "%.3g"), number(after, "%.3g"), factor);
+        }
+    }
+
+    void compare_check(const Contents::Check& before, const Contents::Check& after) {
+        const auto word = [](const Contents::Check& check) {
+            const bool waived =
+                !text_of(member(*check.tree, "waiver")).empty() && member(*check.tree, "waiver").is_string();
+            return std::string(member(*check.tree, check.list->passes) == true ? "holds" : "does not hold") +
+                   (waived ? " (waived)" : "");
+        };
+        compare_word(Change::verdict, before.subject, before.where, before.list->passes, word(before),
+                     word(after));
+        const double value_before = number_of(*before.tree, "value");
+        const double value_after = number_of(*after.tree, "value");
+        ++result_.compared;
+        if (value_before == value_after || (std::isnan(value_before) && std::isnan(value_after))) {
+            ++result_.bitwise;
+            return;
+        }
+        // Round-off has no digits to compare; it is held to its bound by the check itself.
+        const double bound = number_of(*before.tree, "bound");
+        const bool both_round_off = std::abs(value_before) <= bound && std::abs(value_after) <= bound;
+        const bool tiny = std::abs(value_before) < 1e-9 && std::abs(value_after) < 1e-9;
+        const bool close =
+            std::abs(value_after - value_before) <= round_off_of_operators * std::abs(value_before);
+        note(both_round_off || tiny || close ? Change::round_off : Change::error_level, before.subject,
+             before.where, "value", number(value_before, "%.6g"), number(value_after, "%.6g"),
+             value_after / value_before);
+    }
+
+    Comparison result_;
+};
+
+/// Distance of a factor from one, up and down alike; not-a-number is worst.
+double size_of(const Difference& difference) {
+    const double size = std::abs(std::log(difference.factor));
+    return std::isnan(size) ? std::numeric_limits<double>::infinity() : size;
+}
+
+ResultTree picked(const ResultTree& tree, const std::vector<const char*>& names) {
+    ResultTree result = ResultTree::object();
+    for (const char* name : names) {
+        if (!member(tree, name).is_null()) {
+            result[name] = member(tree, name);
+        }
+    }
+    return result;
+}
+
+ResultTree reduced_study(const ResultTree& study, const std::vector<const char*>& identity) {
+    ResultTree result = picked(study, identity);
+    result["fit"] = picked(member(study, "fit"), {"order", "ci95", "verdict", "waiver"});
+    result["samples"] = ResultTree::array();
+    std::vector<const char*> kept{"n"};
+    kept.insert(kept.end(), error_names.begin(), error_names.end());
+    kept.insert(kept.end(), work_names.begin(), work_names.end());
+    for (const ResultTree& sample : member(study, "samples")) {
+        result["samples"].push_back(picked(sample, kept));
+    }
+    return result;
+}
+
+void refuse_unless_passing(const ResultTree& study, const std::vector<const char*>& identity) {
+    const std::string verdict = verdict_of(study);
+    if (verdict != "PASS" && verdict != "NONE" && !verdict.ends_with("(waived)")) {
+        const auto [subject, where] = identity_of(study, identity);
+        throw UserError("no baseline is made of a result that does not pass: " + subject + " (" + where +
+                        ") is " + verdict);
+    }
+}
+
+void refuse_unless_holding(const ResultTree& check, const CheckList& list) {
+    const ResultTree& waiver = member(check, "waiver");
+    const bool known = waiver.is_string() && !waiver.get<std::string>().empty();
+    if ((member(check, list.passes) == true) == known) {
+        const auto [subject, where] = identity_of(check, list.identity);
+        throw UserError("no baseline is made of a result that does not pass: " + subject + " (" + where +
+                        ") is not as it must be");
+    }
+}
+
+} // namespace
+
+std::string_view to_string(Change change) {
+    constexpr std::array<std::string_view, 9> names{
+        "bitwise equal", "equal to round-off", "run time", "new", "work", "error level", "order", "verdict",
+        "missing"};
+    return names[static_cast<std::size_t>(change)];
+}
+
+bool Comparison::fails() const {
+    return std::ranges::any_of(differences, [](const Difference& d) { return d.change >= Change::work; });
+}
+
+Comparison compare(const ResultTree& baseline, const ResultTree& current) {
+    return Comparer().run(contents_of(baseline), contents_of(current));
+}
+
+std::string markdown(const Comparison& comparison) {
+    constexpr std::size_t most_rows = 34; // of 40 lines, with headings and counts
+    struct Group {
+        const Difference* worst;
+        std::size_t count;
+    };
+    std::map<std::pair<int, std::string>, Group> groups; // worst kind of change first
+    std::map<Change, std::size_t> counts;
+    for (const Difference& d : comparison.differences) {
+        ++counts[d.change];
+        if (d.change == Change::round_off) {
+            continue;
+        }
+        const auto [group, fresh] =
+            groups.try_emplace({-static_cast<int>(d.change), d.subject}, Group{&d, 0});
+        ++group->second.count;
+        if (!fresh && size_of(d) > size_of(*group->second.worst)) {
+            group->second.worst = &d;
+        }
+    }
+    std::string text;
+    if (comparison.bitwise == comparison.compared && comparison.differences.empty()) {
+        return "bitwise equal: " + std::to_string(comparison.compared) + " numbers and words\n";
+    }
+    if (!groups.empty()) {
+        MarkdownTable table({"change", "of", "worst at", "what", "baseline", "current", "factor", "cases"});
+        std::size_t rows = 0;
+        for (const auto& [key, group] : groups) {
+            if (++rows > most_rows) {
+                break;
+            }
+            const Difference& d = *group.worst;
+            table.add({std::string(to_string(d.change)), d.subject, d.where, d.what, d.baseline, d.current,
+                       number(d.factor, "%.6g"), std::to_string(group.count)});
+        }
+        text += table.text();
+        if (groups.size() > most_rows) {
+            text += std::to_string(groups.size() - most_rows) + " more rows are in the JSON form\n";
+        }
+        text += "\n";
+    }
+    text += std::to_string(comparison.compared) + " compared: " + std::to_string(comparison.bitwise) +
+            " bitwise equal";
+    for (const auto& [change, count] : counts) {
+        text += ", " + std::to_string(count) + " " + std::string(to_string(change));
+    }
+    return text + (comparison.fails() ? "; FAIL\n" : "; PASS\n");
+}
+
+ResultTree reduced_for_baseline(const ResultTree& result) {
+    ResultTree baseline{{"format", "sphvv-baseline"}, {"format_version", 1}};
+    baseline["provenance"] = picked(member(result, "provenance"), {"revision", "compiler", "flags", "cpu"});
+    for (const auto& [list, identity] :
+         {std::pair{"operator_studies", &operator_identity}, std::pair{"studies", &scheme_identity}}) {
+        baseline[list] = ResultTree::array();
+        for (const ResultTree& study : member(result, list)) {
+            refuse_unless_passing(study, *identity);
+            baseline[list].push_back(reduced_study(study, *identity));
+        }
+    }
+    for (const CheckList& list : check_lists()) {
+        baseline[list.name] = ResultTree::array();
+        std::vector<const char*> kept = list.identity;
+        kept.insert(kept.end(), {"value", "bound", "waiver", list.passes});
+        for (const ResultTree& check : member(result, list.name)) {
+            refuse_unless_holding(check, list);
+            baseline[list.name].push_back(picked(check, kept));
+        }
+    }
+    return baseline;
+}
+
+std::string baseline_text(const ResultTree& baseline) {
+    std::string text = "{";
+    bool first = true;
+    for (const auto& [name, value] : baseline.items()) {
+        text += (first ? "\n" : ",\n") + ResultTree(name).dump() + ": ";
+        first = false;
+        if (!value.is_array()) {
+            text += value.dump();
+            continue;
+        }
+        text += "[";
+        for (std::size_t k = 0; k < value.size(); ++k) {
+            text += k == 0 ? "\n" : ",\n";
+            if (!value[k].contains("samples")) {
+                text += value[k].dump();
+                continue;
+            }
+            ResultTree head = value[k];
+            head.erase("samples");
+            std::string line = head.dump();
+            line.pop_back();
+            text += line + ",\"samples\":[";
+            const ResultTree& samples = value[k].at("samples");
+            for (std::size_t r = 0; r < samples.size(); ++r) {
+                text += (r == 0 ? "\n " : ",\n ") + samples[r].dump();
+            }
+            text += "]}";
+        }
+        text += "]";
+    }
+    return text + "\n}\n";
+}
+
+} // namespace sphvv::verification

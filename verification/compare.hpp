@@ -1,0 +1,66 @@
+#pragma once
+
+#include "sphvv/verification/results.hpp"
+
+#include <string>
+#include <vector>
+
+namespace sphvv::verification {
+
+/// How one compared thing differs from the baseline, from harmless to not (rules of evidence §9).
+enum class Change {
+    bitwise_equal,
+    round_off,   ///< within what another compiler or other flags change
+    run_time,    ///< seconds; informational
+    added,       ///< not in the baseline; informational
+    work,        ///< pair evaluations, iterations, matrix entries or steps; fails from 1 % on
+    error_level, ///< an error norm, up or down: an improvement asks for a new baseline, too
+    order,       ///< by more than both 95 % intervals, or 0.05 where that is more
+    verdict,     ///< PASS, FAIL, …; or a property, kernel check or published figure that holds or does not
+    missing,     ///< in the baseline only
+};
+std::string_view to_string(Change change);
+
+/// One difference.
+struct Difference {
+    Change change;
+    std::string subject; ///< operator, kernel or scheme: what somebody edits
+    std::string where;   ///< ladder and rung, or property
+    std::string what;    ///< norm, count or word that differs
+    std::string baseline;
+    std::string current;
+    double factor; ///< current over baseline, 1 for words
+};
+
+struct Comparison {
+    std::vector<Difference> differences; ///< without the bitwise equal ones
+    std::size_t compared = 0;            ///< numbers and words held against each other
+    std::size_t bitwise = 0;             ///< of those, the bitwise equal ones; seconds and costs take no part
+
+    bool fails() const;
+};
+
+/// Holds results against a baseline; both may be full results (of `sphvv operators` or `sphvv verify`) or
+/// reduced ones (reduced_for_baseline). Rungs are found by study and n, whatever their order in the file.
+///
+/// Equal to round-off: 1e-6 for operators (-O3 native against -O1: 3e-8), whose sums have no memory; 1e-2 for
+/// schemes, whose pressure solve ends at 1e-5 and whose particles amplify it (7e-4 between those two). Values
+/// of a property that are both within its bound are equal to round-off.
+///
+/// Throws UserError if the two have no study in common.
+Comparison compare(const ResultTree& baseline, const ResultTree& current);
+
+/// The smallest table that shows why: one row for each subject and kind of change with the worst of them, at
+/// most 40 lines, and a line of counts.
+std::string markdown(const Comparison& comparison);
+
+/// What a baseline keeps of a result: identities, error norms, orders, verdicts, work; no seconds, no texts.
+/// Throws UserError, naming the first one, if the result has a verdict that failed or is inconclusive without
+/// a waiver, a property, kernel check or figure that is not as it must be, or a run that ended early
+/// unexpectedly: a baseline that blesses a wrong answer is worse than none.
+ResultTree reduced_for_baseline(const ResultTree& result);
+
+/// JSON with one line a rung or check, so that a reviewer can read the difference of two baselines.
+std::string baseline_text(const ResultTree& baseline);
+
+} // namespace sphvv::verification

@@ -1,0 +1,227 @@
+// The regression gate on synthetic results: every kind of change, the table that names it, and what is no
+// baseline.
+#include "sphvv/verification/compare.hpp"
+
+#include "sphvv/solver/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace sphvv::verification {
+namespace {
+
+ResultTree sample(int n, double error) {
+    return {{"n", n},
+            {"l1", error},
+            {"l2", 1.1 * error},
+            {"linf", 2 * error},
+            {"steps", 10},
+            {"pair_evaluations", 1000. * n},
+            {"seconds", 0.1}};
+}
+
+ResultTree operator_study(const std::string& name, const std::string& arrangement) {
+    ResultTree samples = ResultTree::array();
+    for (const int n : {20, 40, 80, 160}) {
+        samples.push_back(sample(n, 1. / n));
+    }
+    return {{"operator", name},
+            {"dimension", 2},
+            {"arrangement", arrangement},
+            {"path", "h/dx fixed"},
+            {"kernel", "quintic_spline"},
+            {"tier", "quick"},
+            {"fit", {{"order", 1.0}, {"ci95", 0.01}, {"verdict", "PASS"}}},
+            {"samples", samples}};
+}
+
+/// A result of two operators on two arrangements, a scheme, a property and a figure.
+ResultTree result() {
+    ResultTree tree{{"format", "sphvv-results"}, {"provenance", {{"revision", "abc"}, {"cpu", "x"}}}};
+    tree["operator_studies"] = {operator_study("gradient", "square"), operator_study("gradient", "random"),
+                                operator_study("laplacian", "square")};
+    ResultTree scheme = operator_study("", "");
+    for (const char* name : {"operator", "dimension", "arrangement", "path", "kernel"}) {
+        scheme.erase(name);
+    }
+    scheme["scheme"] = "isph_dfs";
+    scheme["group"] = "taylor_green re=100";
+    scheme["field"] = "velocity";
+    tree["studies"] = {scheme};
+    tree["operator_properties"] = {{{"operator", "gradient"},
+                                    {"dimension", 2},
+                                    {"arrangement", "random"},
+                                    {"property", "exact for linears"},
+                                    {"value", 1e-15},
+                                    {"bound", 1e-10},
+                                    {"passes", true}}};
+    tree["published_figures"] = {
+        {{"id", "XU-LAP"}, {"value", 66.5}, {"agrees", true}, {"waiver", ""}},
+        {{"id", "XU-ODD"}, {"value", 4000.}, {"agrees", false}, {"waiver", "a misprint"}}};
+    return tree;
+}
+
+std::size_t count(const Comparison& comparison, Change change) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        comparison.differences, [&](const Difference& d) { return d.change == change; }));
+}
+
+/// The comparison after one edit of the current result.
+template <class Edit>
+Comparison after(const Edit& edit) {
+    ResultTree current = result();
+    edit(current);
+    return compare(result(), current);
+}
+
+TEST(Compare, TheSameIsBitwiseEqualWhateverItsOrder) {
+    EXPECT_FALSE(compare(result(), result()).fails());
+    const Comparison comparison = after([](ResultTree& tree) {
+        std::reverse(tree["operator_studies"].begin(), tree["operator_studies"].end());
+        std::reverse(tree["studies"][0]["samples"].begin(), tree["studies"][0]["samples"].end());
+    });
+    EXPECT_TRUE(comparison.differences.empty());
+    EXPECT_EQ(comparison.bitwise, comparison.compared);
+    EXPECT_TRUE(markdown(comparison).starts_with("bitwise equal")) << markdown(comparison);
+}
+
+TEST(Compare, ABaselineComparesBitwiseEqualWithItsResult) {
+    const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(result())));
+    const Comparison comparison = compare(baseline, result());
+    EXPECT_TRUE(comparison.differences.empty()) << markdown(comparison);
+    EXPECT_GT(comparison.compared, 50);
+}
+
+TEST(Compare, RoundOffPassesAndAChangedConstantIsNamed) {
+    const auto scaled = [](double factor) {
+        return after([&](ResultTree& tree) {
+            for (ResultTree& study : tree["operator_studies"]) {
+                for (ResultTree& row : study["samples"]) {
+                    if (study["operator"] == "gradient") {
+                        row["l2"] = factor * row["l2"].get<double>();
+                    }
+                }
+            }
+        });
+    };
+    EXPECT_EQ(count(scaled(1 + 1e-9), Change::round_off), 8);
+    EXPECT_FALSE(scaled(1 + 1e-9).fails());
+    for (const double factor : {1.01, 0.99}) { // an improvement needs a new baseline, too
+        const Comparison comparison = scaled(factor);
+        EXPECT_EQ(count(comparison, Change::error_level), 8);
+        EXPECT_TRUE(comparison.fails());
+        const std::string table = markdown(comparison);
+        EXPECT_NE(table.find("| gradient |"), std::string::npos) << table;
+        EXPECT_EQ(table.find("laplacian"), std::string::npos) << table;
+        EXPECT_EQ(std::ranges::count(table, '\n'), 5) << "header, rule, one row, blank, counts\n" << table;
+    }
+}
+
+TEST(Compare, SchemesHaveTheirOwnRoundOff) {
+    const auto scaled = [](double factor) {
+        return after([&](ResultTree& tree) {
+            tree["studies"][0]["samples"][1]["l1"] =
+                factor * tree["studies"][0]["samples"][1]["l1"].get<double>();
+        });
+    };
+    EXPECT_FALSE(scaled(1.005).fails());
+    EXPECT_EQ(count(scaled(1.02), Change::error_level), 1);
+}
+
+TEST(Compare, EveryKindOfChangeIsSeen) {
+    EXPECT_EQ(
+        count(after([](ResultTree& t) { t["operator_studies"][0]["fit"]["order"] = 1.2; }), Change::order),
+        1);
+    EXPECT_EQ(
+        count(after([](ResultTree& t) { t["operator_studies"][0]["fit"]["order"] = 1.04; }), Change::order),
+        0);
+    EXPECT_EQ(count(after([](ResultTree& t) { t["operator_studies"][0]["fit"]["verdict"] = "FAIL"; }),
+                    Change::verdict),
+              1);
+    EXPECT_EQ(count(after([](ResultTree& t) { t["studies"][0]["samples"][0]["pair_evaluations"] = 3e4; }),
+                    Change::work),
+              1);
+    EXPECT_EQ(
+        count(after([](ResultTree& t) { t["operator_properties"][0]["passes"] = false; }), Change::verdict),
+        1);
+    EXPECT_EQ(
+        count(after([](ResultTree& t) { t["published_figures"][0]["value"] = 67.0; }), Change::error_level),
+        1);
+    EXPECT_EQ(count(after([](ResultTree& t) { t["operator_studies"].erase(1); }), Change::missing), 1);
+    EXPECT_EQ(count(after([](ResultTree& t) { t["studies"][0]["samples"].erase(1); }), Change::missing), 1);
+    EXPECT_EQ(count(after([](ResultTree& t) { t["operator_studies"][0]["samples"][0]["l1"] = nullptr; }),
+                    Change::error_level),
+              1);
+}
+
+TEST(Compare, WhatIsInformationalDoesNotFail) {
+    const Comparison slower = after([](ResultTree& t) { t["studies"][0]["samples"][0]["seconds"] = 1.0; });
+    EXPECT_EQ(count(slower, Change::run_time), 1);
+    EXPECT_FALSE(slower.fails());
+    const Comparison more =
+        after([](ResultTree& t) { t["operator_studies"].push_back(operator_study("new", "square")); });
+    EXPECT_EQ(count(more, Change::added), 1);
+    EXPECT_FALSE(more.fails());
+    const Comparison noise = after([](ResultTree& t) { t["operator_properties"][0]["value"] = 9e-13; });
+    EXPECT_EQ(count(noise, Change::round_off), 1);
+    EXPECT_FALSE(noise.fails());
+}
+
+TEST(Compare, TheTableStaysShort) {
+    ResultTree before = result();
+    ResultTree now = result();
+    for (int k = 0; k < 100; ++k) {
+        before["operator_studies"].push_back(operator_study("operator_" + std::to_string(k), "square"));
+        now["operator_studies"].push_back(operator_study("operator_" + std::to_string(k), "square"));
+        now["operator_studies"].back()["samples"][0]["l2"] = 7.0;
+    }
+    EXPECT_LE(std::ranges::count(markdown(compare(before, now)), '\n'), 40);
+}
+
+TEST(Compare, ResultsWithNothingInCommonAreRefused) {
+    ResultTree other = result();
+    for (const char* list : {"operator_studies", "operator_properties", "published_figures"}) {
+        other[list] = ResultTree::array();
+    }
+    ResultTree operators = result();
+    operators["studies"] = ResultTree::array();
+    EXPECT_THROW(compare(operators, other), UserError);
+}
+
+TEST(Bless, RefusesWhatDoesNotPassAndNamesIt) {
+    const auto refusal = [](const auto& edit) -> std::string {
+        ResultTree tree = result();
+        edit(tree);
+        try {
+            reduced_for_baseline(tree);
+        } catch (const UserError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal([](ResultTree&) {}), "");
+    EXPECT_NE(
+        refusal([](ResultTree& t) { t["operator_studies"][2]["fit"]["verdict"] = "FAIL"; }).find("laplacian"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal([](ResultTree& t) { t["studies"][0]["fit"]["verdict"] = "INCONCLUSIVE"; }).find("isph_dfs"),
+        std::string::npos);
+    EXPECT_EQ(refusal([](ResultTree& t) {
+                  t["studies"][0]["fit"]["verdict"] = "INCONCLUSIVE";
+                  t["studies"][0]["fit"]["waiver"] = "known";
+              }),
+              "");
+    EXPECT_NE(refusal([](ResultTree& t) {
+                  t["operator_properties"][0]["passes"] = false;
+              }).find("exact for linears"),
+              std::string::npos);
+    EXPECT_NE(refusal([](ResultTree& t) { t["published_figures"][0]["agrees"] = false; }).find("XU-LAP"),
+              std::string::npos);
+    // A disagreement that is known must stay one: if it agrees, its waiver has to go.
+    EXPECT_NE(refusal([](ResultTree& t) { t["published_figures"][1]["agrees"] = true; }).find("XU-ODD"),
+              std::string::npos);
+}
+
+} // namespace
+} // namespace sphvv::verification
