@@ -16,18 +16,20 @@ using verification::ResultTree;
 /// A result file (HDF5 or its JSON twin) or a baseline. Throws UserError in one sentence for anything else.
 ResultTree read_results(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
-    if (!stream || stream.peek() != '{') {
-        const ResultTree tree = verification::read_results_hdf5(path);
+    if (!stream || (stream >> std::ws).peek() != '{') {
+        ResultTree tree = verification::read_results_hdf5(path);
         verification::check_result_file(tree, path);
         return tree;
     }
-    const ResultTree tree = ResultTree::parse(stream, nullptr, false);
-    const std::string format = tree.is_object() ? tree.value("format", "") : "";
-    if (format == "sphvv-results") {
+    ResultTree tree = ResultTree::parse(stream, nullptr, false);
+    const auto is = [&](const char* name, const ResultTree& value) {
+        return tree.is_object() && tree.contains(name) && tree.at(name) == value;
+    };
+    if (is("format", "sphvv-results")) {
         verification::check_result_file(tree, path);
         return tree;
     }
-    if (format != "sphvv-baseline" || tree.value("format_version", 0) != 1) {
+    if (!is("format", "sphvv-baseline") || !is("format_version", 1)) {
         throw UserError("'" + path + "' is neither a result file of sphvv (HDF5 or JSON) nor a baseline");
     }
     return tree;

@@ -39,11 +39,16 @@ int operators(const Options& options, const std::string& command_line) {
     verification::OperatorResults results;
     {
         ProgressLine line(options.common.quiet);
-        results = verification::run_operator_workbench(wanted, options.tier, kernel, everything,
-                                                       [&](const std::string& what, double fraction) {
-                                                           line.update(what, fraction);
-                                                           stop_if_signalled();
-                                                       });
+        results = verification::run_operator_workbench(
+            wanted, options.tier, kernel, everything,
+            [&](const std::string& what, double fraction, bool ladder_done) {
+                if (ladder_done) {
+                    line.done(what);
+                } else {
+                    line.update(what, fraction);
+                }
+                stop_if_signalled();
+            });
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     auto document = verification::result_document(command_line, provenance, seconds, {});

@@ -42,7 +42,8 @@ function(sphvv_test room name label)
   add_executable(${room}_${name} ${CMAKE_CURRENT_SOURCE_DIR}/tests/${name}.cpp)
   target_link_libraries(${room}_${name} PRIVATE sphvv::${room} sphvv_options GTest::gtest_main ${ARGN})
   add_test(NAME ${room}.${name} COMMAND ${room}_${name})
-  set_tests_properties(${room}.${name} PROPERTIES LABELS ${label})
+  # Threads that spin while they wait would take the processor from the tests beside them.
+  set_tests_properties(${room}.${name} PROPERTIES LABELS ${label} ENVIRONMENT OMP_WAIT_POLICY=passive)
 endfunction()
 
 # sphvv_registry(ROOM FOLDER TYPE): the one-file rule. Every FOLDER/STEM.cpp must define

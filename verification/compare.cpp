@@ -55,9 +55,17 @@ double number_of(const ResultTree& tree, const char* name) {
     return value.is_number() ? value.get<double>() : nan_value;
 }
 
-/// The first member, and the others put together.
+/// The first member, and the others put together. Throws UserError for an entry without identity: two of them
+/// would be the same study. Only a tier may be missing (reports/FORMAT.md).
 std::pair<std::string, std::string> identity_of(const ResultTree& entry,
                                                 const std::vector<const char*>& names) {
+    for (const char* name : names) {
+        const ResultTree& value = member(entry, name);
+        if (!value.is_string() && !value.is_number() && std::string_view(name) != "tier") {
+            throw UserError("not a complete result or baseline: an entry has no '" + std::string(name) +
+                            "' by which to find it: " + text_of(entry).substr(0, 80));
+        }
+    }
     std::string where;
     for (std::size_t k = 1; k < names.size(); ++k) {
         where += (where.empty() ? "" : ", ") + text_of(member(entry, names[k])) +
@@ -69,6 +77,12 @@ std::pair<std::string, std::string> identity_of(const ResultTree& entry,
 std::string verdict_of(const ResultTree& study) {
     const ResultTree& fit = member(study, "fit");
     return text_of(member(fit, "verdict")) + (member(fit, "waiver").is_string() ? " (waived)" : "");
+}
+
+/// The expected band as text.
+std::string band_of(const ResultTree& study) {
+    const ResultTree& expected = member(study, "expected");
+    return member(expected, "low").dump() + "…" + member(expected, "high").dump();
 }
 
 /// Everything that is compared, by identity.
@@ -88,15 +102,48 @@ struct Contents {
     std::map<std::string, Check> checks;
 };
 
+/// The entries of a list, which may be missing. Throws UserError for anything else.
+const ResultTree& entries_of(const ResultTree& tree, const char* list) {
+    const ResultTree& entries = member(tree, list);
+    if (!entries.is_null() && !entries.is_array()) {
+        throw UserError("not a complete result or baseline: " + std::string(list) + " is not a list");
+    }
+    return entries;
+}
+
+/// A name that no other entry has: a study that stands twice in a file is compared twice, not passed over.
+template <class Map>
+std::string free_key(const Map& map, std::string key) {
+    while (map.contains(key)) {
+        key += " again";
+    }
+    return key;
+}
+
+/// Where an entry stands among its like: the list or nothing, the subject, the place.
+std::string key_of(std::string_view list, const std::string& subject, const std::string& where) {
+    std::string key(list);
+    key.append("|").append(subject).append("|").append(where);
+    return key;
+}
+
+[[noreturn]] void refuse_rung(const std::string& subject, const std::string& where) {
+    throw UserError("not a complete result or baseline: a rung of " + subject + " (" + where +
+                    ") has no 'n'");
+}
+
 void collect_studies(const ResultTree& tree, const char* list, const std::vector<const char*>& identity,
                      Contents& contents) {
-    for (const ResultTree& study : member(tree, list)) {
+    for (const ResultTree& study : entries_of(tree, list)) {
         const auto [subject, where] = identity_of(study, identity);
         Contents::Study entry{subject, where, &study, &identity == &operator_identity, {}};
-        for (const ResultTree& sample : member(study, "samples")) {
-            entry.rungs[static_cast<long>(number_of(sample, "n"))] = &sample;
+        for (const ResultTree& sample : entries_of(study, "samples")) {
+            if (!member(sample, "n").is_number_integer()) {
+                refuse_rung(subject, where);
+            }
+            entry.rungs[member(sample, "n").get<long>()] = &sample;
         }
-        contents.studies.emplace(subject + "|" + where, std::move(entry));
+        contents.studies.emplace(free_key(contents.studies, key_of("", subject, where)), std::move(entry));
     }
 }
 
@@ -105,9 +152,9 @@ Contents contents_of(const ResultTree& tree) {
     collect_studies(tree, "operator_studies", operator_identity, contents);
     collect_studies(tree, "studies", scheme_identity, contents);
     for (const CheckList& list : check_lists()) {
-        for (const ResultTree& check : member(tree, list.name)) {
+        for (const ResultTree& check : entries_of(tree, list.name)) {
             const auto [subject, where] = identity_of(check, list.identity);
-            contents.checks.emplace(std::string(list.name) + "|" + subject + "|" + where,
+            contents.checks.emplace(free_key(contents.checks, key_of(list.name, subject, where)),
                                     Contents::Check{subject, where, &check, &list});
         }
     }
@@ -183,18 +230,11 @@ private:
     }
 
     void compare_study(const Contents::Study& before, const Contents::Study& after) {
+        compare_word(Change::demand, before.subject, before.where, "expected order", band_of(*before.tree),
+                     band_of(*after.tree));
         compare_word(Change::verdict, before.subject, before.where, "verdict", verdict_of(*before.tree),
                      verdict_of(*after.tree));
-        const ResultTree& fit_before = member(*before.tree, "fit");
-        const ResultTree& fit_after = member(*after.tree, "fit");
-        const double change = std::abs(number_of(fit_after, "order") - number_of(fit_before, "order"));
-        const double allowed =
-            std::max(least_order_change, number_of(fit_before, "ci95") + number_of(fit_after, "ci95"));
-        if (change > allowed) {
-            note(Change::order, before.subject, before.where, "order",
-                 number(number_of(fit_before, "order"), "%.3f"),
-                 number(number_of(fit_after, "order"), "%.3f"));
-        }
+        compare_order(before, after);
         const double round_off = before.of_operator ? round_off_of_operators : round_off_of_schemes;
         for (const auto& [n, rung] : before.rungs) {
             const auto found = after.rungs.find(n);
@@ -213,6 +253,31 @@ private:
             }
             compare_seconds(before, n, number_of(*rung, "seconds"), number_of(*found->second, "seconds"));
         }
+        for (const auto& [n, rung] : after.rungs) {
+            if (!before.rungs.contains(n)) {
+                note(Change::added, after.subject, after.where, "n = " + std::to_string(n), "not there",
+                     "there");
+            }
+        }
+    }
+
+    /// h takes part in the order, so it can change where no error does. An order that is gone is a change,
+    /// too.
+    void compare_order(const Contents::Study& before, const Contents::Study& after) {
+        const ResultTree& fit_before = member(*before.tree, "fit");
+        const ResultTree& fit_after = member(*after.tree, "fit");
+        const double order_before = number_of(fit_before, "order");
+        const double order_after = number_of(fit_after, "order");
+        ++result_.compared;
+        if (order_before == order_after || (std::isnan(order_before) && std::isnan(order_after))) {
+            ++result_.bitwise;
+            return;
+        }
+        const double allowed =
+            std::max(least_order_change, number_of(fit_before, "ci95") + number_of(fit_after, "ci95"));
+        const bool close = std::abs(order_after - order_before) <= allowed; // not if one is missing
+        note(close ? Change::round_off : Change::order, before.subject, before.where, "order",
+             number(order_before, "%.3f"), number(order_after, "%.3f"));
     }
 
     void compare_seconds(const Contents::Study& study, long n, double before, double after) {
@@ -233,6 +298,8 @@ private:
         };
         compare_word(Change::verdict, before.subject, before.where, before.list->passes, word(before),
                      word(after));
+        compare_word(Change::demand, before.subject, before.where, "bound",
+                     member(*before.tree, "bound").dump(), member(*after.tree, "bound").dump());
         const double value_before = number_of(*before.tree, "value");
         const double value_after = number_of(*after.tree, "value");
         ++result_.compared;
@@ -246,8 +313,12 @@ private:
         const bool tiny = std::abs(value_before) < 1e-9 && std::abs(value_after) < 1e-9;
         const bool close =
             std::abs(value_after - value_before) <= round_off_of_operators * std::abs(value_before);
-        note(both_round_off || tiny || close ? Change::round_off : Change::error_level, before.subject,
-             before.where, "value", number(value_before, "%.6g"), number(value_after, "%.6g"),
+        // A kernel's smoothness is an estimate from differences, good to the tolerance of its check and no
+        // better.
+        const bool within_tolerance =
+            std::abs(value_after - value_before) <= number_of(*before.tree, "tolerance");
+        note(both_round_off || tiny || close || within_tolerance ? Change::round_off : Change::error_level,
+             before.subject, before.where, "value", number(value_before, "%.6g"), number(value_after, "%.6g"),
              value_after / value_before);
     }
 
@@ -272,6 +343,7 @@ ResultTree picked(const ResultTree& tree, const std::vector<const char*>& names)
 
 ResultTree reduced_study(const ResultTree& study, const std::vector<const char*>& identity) {
     ResultTree result = picked(study, identity);
+    result["expected"] = picked(member(study, "expected"), {"low", "high"});
     result["fit"] = picked(member(study, "fit"), {"order", "ci95", "verdict", "waiver"});
     result["samples"] = ResultTree::array();
     std::vector<const char*> kept{"n"};
@@ -305,9 +377,11 @@ void refuse_unless_holding(const ResultTree& check, const CheckList& list) {
 } // namespace
 
 std::string_view to_string(Change change) {
-    constexpr std::array<std::string_view, 9> names{
-        "bitwise equal", "equal to round-off", "run time", "new", "work", "error level", "order", "verdict",
-        "missing"};
+    constexpr std::array<std::string_view, 10> names{"bitwise equal", "equal to round-off",
+                                                     "run time",      "new",
+                                                     "work",          "error level",
+                                                     "order",         "demand",
+                                                     "verdict",       "missing"};
     return names[static_cast<std::size_t>(change)];
 }
 
@@ -382,7 +456,7 @@ ResultTree reduced_for_baseline(const ResultTree& result) {
     for (const CheckList& list : check_lists()) {
         baseline[list.name] = ResultTree::array();
         std::vector<const char*> kept = list.identity;
-        kept.insert(kept.end(), {"value", "bound", "waiver", list.passes});
+        kept.insert(kept.end(), {"value", "bound", "tolerance", "waiver", list.passes});
         for (const ResultTree& check : member(result, list.name)) {
             refuse_unless_holding(check, list);
             baseline[list.name].push_back(picked(check, kept));

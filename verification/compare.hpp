@@ -16,6 +16,7 @@ enum class Change {
     work,        ///< pair evaluations, iterations, matrix entries or steps; fails from 1 % on
     error_level, ///< an error norm, up or down: an improvement asks for a new baseline, too
     order,       ///< by more than both 95 % intervals, or 0.05 where that is more
+    demand,      ///< what theory is said to expect, or a property's bound: a check made weaker or stronger
     verdict,     ///< PASS, FAIL, …; or a property, kernel check or published figure that holds or does not
     missing,     ///< in the baseline only
 };
@@ -45,9 +46,10 @@ struct Comparison {
 ///
 /// Equal to round-off: 1e-6 for operators (-O3 native against -O1: 3e-8), whose sums have no memory; 1e-2 for
 /// schemes, whose pressure solve ends at 1e-5 and whose particles amplify it (7e-4 between those two). Values
-/// of a property that are both within its bound are equal to round-off.
+/// of a property that are both within its bound are equal to round-off, and so are those of a kernel check
+/// that differ by no more than the baseline's tolerance of it.
 ///
-/// Throws UserError if the two have no study in common.
+/// Throws UserError if the two have no study in common, or if an entry lacks what identifies it.
 Comparison compare(const ResultTree& baseline, const ResultTree& current);
 
 /// The smallest table that shows why: one row for each subject and kind of change with the worst of them, at

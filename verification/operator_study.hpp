@@ -84,8 +84,8 @@ std::optional<Expected> expected_order(const solver::Operator& op, const Operato
 /// The ladders of a tier: "quick" (two dimensions), "nightly" (finer, and three dimensions).
 std::vector<OperatorLadder> operator_ladders(std::string_view tier);
 
-/// Told what has been evaluated: a line of text and the share that is done.
-using OperatorProgress = std::function<void(const std::string& what, double fraction)>;
+/// Told what has been evaluated: a line of text, the share that is done, and whether a ladder is complete.
+using OperatorProgress = std::function<void(const std::string& what, double fraction, bool ladder_done)>;
 
 /// Evaluates all operators on all ladders and judges them.
 std::vector<OperatorStudy> run_operator_studies(std::span<const solver::Operator* const> operators,

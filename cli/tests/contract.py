@@ -148,6 +148,75 @@ class Contract(unittest.TestCase):
         report = sphvv("report", str(out), "--out", str(self.folder / "report"))
         self.assertEqual(report.returncode, 0, report.stderr)
 
+    def small_result(self):
+        """A result file and its JSON twin: two rungs, of which no order is demanded."""
+        out = self.folder / "result.h5"
+        twin = self.folder / "result.json"
+        result = sphvv("verify", "taylor_green", "--scheme", "wcsph", "--n", "12,16", "--set", "end_time=0.05", "--out",
+                       str(out), "--json", str(twin), "--quiet")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return out, twin
+
+    def edited(self, twin, edit):
+        tree = json.loads(twin.read_text())
+        edit(tree["studies"][0])
+        path = self.folder / "edited.json"
+        path.write_text(json.dumps(tree))
+        return path
+
+    def test_compare_and_bless(self):
+        out, twin = self.small_result()
+        for other in (out, twin):
+            result = sphvv("compare", str(out), str(other))
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertTrue(result.stdout.startswith("bitwise equal"), result.stdout)
+        baseline = self.folder / "baseline.json"
+        self.assertEqual(sphvv("bless", str(out), "--baseline", str(baseline)).returncode, 0)
+        blessed = baseline.read_text()
+        self.assertTrue(sphvv("compare", str(baseline), str(out)).stdout.startswith("bitwise equal"))
+        again = sphvv("bless", str(twin), "--baseline", str(baseline))  # either form makes the same baseline
+        self.assertIn("bitwise equal", again.stdout)
+        self.assertEqual(baseline.read_text(), blessed)
+
+        for factor in (2.0, 0.5):  # an improvement asks for a new baseline, too
+            changed = self.edited(twin, lambda study: study["samples"][1].update(l2=factor * study["samples"][1]["l2"]))
+            result = sphvv("compare", str(baseline), str(changed), "--json", str(self.folder / "differences.json"))
+            self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+            self.assertIn("wcsph", result.stdout)
+            difference, = json.loads((self.folder / "differences.json").read_text())["differences"]
+            self.assertEqual((difference["change"], difference["what"]), ("error level", "l2"))
+            self.assertAlmostEqual(difference["factor"], factor)
+
+        failing = self.edited(twin, lambda study: study["fit"].update(verdict="FAIL"))
+        refused = sphvv("bless", str(failing), "--baseline", str(baseline))
+        self.assertEqual(refused.returncode, 1)
+        self.assertEqual(len(refused.stderr.strip().splitlines()), 1, refused.stderr)
+        self.assertIn("wcsph", refused.stderr)
+        self.assertEqual(baseline.read_text(), blessed)
+
+    def test_compare_refuses_what_is_no_result(self):
+        out, twin = self.small_result()
+        wrong = {"cut.h5": out.read_bytes()[: out.stat().st_size // 2], "foreign.h5": b"no HDF5 at all", "empty.json": b"",
+                 "cut.json": twin.read_bytes()[:2000], "foreign.json": b'{"format": 5}', "other.json": b'{"a": []}',
+                 "version.json": b'{"format": "sphvv-baseline", "format_version": "1"}',
+                 "list.json": b'{"format": "sphvv-baseline", "format_version": 1, "operator_studies": 5}',
+                 "nameless.json": b'{"format": "sphvv-baseline", "format_version": 1, "operator_studies": [{}]}'}
+        for name, content in wrong.items():
+            path = self.folder / name
+            path.write_bytes(content)
+            with self.subTest(name):
+                self.assert_refused(sphvv("compare", str(path), str(out)))
+                self.assert_refused(sphvv("compare", str(out), str(path)))
+                self.assert_refused(sphvv("bless", str(out), "--baseline", str(path)))  # not an old baseline
+                self.assertEqual(path.read_bytes(), content)
+        self.assert_refused(sphvv("compare", str(out), str(self.folder / "missing.h5")), "missing.h5")
+        self.assert_refused(sphvv("bless", str(out), "--baseline", str(self.folder / "nowhere" / "b.json")), "nowhere")
+        operators = self.folder / "operators.json"  # of another command: nothing in common
+        operators.write_text(json.dumps({
+            "format": "sphvv-baseline", "format_version": 1,
+            "published_figures": [{"id": "XU-LAP", "value": 66.5, "agrees": True, "waiver": ""}]}))
+        self.assert_refused(sphvv("compare", str(operators), str(out)), "in common")
+
     def test_list_and_help(self):
         for subject in ("cases", "schemes", "kernels", "studies", "solutions"):
             entries = json.loads(sphvv("list", subject, "--json", "-").stdout)
@@ -155,7 +224,7 @@ class Contract(unittest.TestCase):
             for entry in entries:
                 for key in ("name", "summary", "source"):
                     self.assertTrue(entry[key], (subject, entry))
-        for command in ("list", "run", "verify", "report"):
+        for command in ("list", "run", "operators", "verify", "compare", "bless", "report"):
             result = sphvv(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("Example:", result.stdout)

@@ -21,9 +21,9 @@ def parse_arguments(arguments):
     parser = argparse.ArgumentParser(
         prog="sphvv report", description="Turn result files into a page with tables and pictures.",
         epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("files", nargs="+", metavar="FILE", help="a result file of sphvv (.h5)")
+    parser.add_argument("files", nargs="+", metavar="FILE", help="a result file of sphvv (.h5 or its .json twin)")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for the page, its tables and its pictures")
-    parser.add_argument("--json", metavar="FILE", help="write the list of written files and verdict counts; - is standard output")
+    parser.add_argument("--json", metavar="FILE", help="write the list of written files, verdict counts and check counts; - is standard output")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser.parse_args(arguments)
 
@@ -50,7 +50,7 @@ def main(arguments=None):
         write_report(options.out, report.files)
         if options.json:
             write_summary(options.json, {"index": os.path.join(options.out, "index.html"),
-                                         "files": sorted(report.files), "verdicts": report.counts})
+                                         "files": sorted(report.files), "verdicts": report.counts, "checks": report.checks})
     except ResultError as error:
         print(f"sphvv report: {error}", file=sys.stderr)
         return BAD_INPUT

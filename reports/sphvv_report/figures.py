@@ -30,7 +30,8 @@ WIDTH = 4.7  # inches: legible at the width of a phone, and two fit side by side
 PLOT_HEIGHT = 2.75
 FIELD_UNITS = {"velocity": "m/s", "pressure": "Pa"}
 NORM_TITLES = {"l1": "L1", "l2": "L2", "linf": "L∞"}
-COSTS = {"seconds": "run time [s]", "pair_evaluations": "pair evaluations"}
+COSTS = {"seconds": "run time [s]", "pair_evaluations": "pair evaluations", "nanoseconds": "time of one application [ns]"}
+SPACINGS = {"h": "smoothing length h [m]", "dx": "particle spacing dx [m]"}
 
 
 @dataclass
@@ -183,9 +184,9 @@ def fit_norm(studies):
     return norm if norm in NORM_TITLES else "l2"
 
 
-def errors(study, norm):
-    """The (h, error) of the rungs that survived, coarsest first."""
-    points = [(sample["h"], sample[norm]) for sample in study["samples"] if sample["survived"]]
+def errors(study, norm, spacing):
+    """The (spacing, error) of the rungs that survived, coarsest first."""
+    points = [(sample[spacing], sample[norm]) for sample in study["samples"] if sample["survived"]]
     return sorted(((h, e) for h, e in points if is_drawable(h) and is_drawable(e)), reverse=True)
 
 
@@ -239,9 +240,9 @@ def draw_slope_triangle(axes, studies, x_limits, y_limits):
                   fontsize=7.5, color="#444444")
 
 
-def draw_early_ends(axes, study, look, level):
-    """Crosses above the h axis where a run ended early and so has no error."""
-    spots = [sample["h"] for sample in study["samples"] if not sample["survived"] and is_drawable(sample["h"])]
+def draw_early_ends(axes, study, spacing, look, level):
+    """Crosses above the axis where a run ended early and so has no error."""
+    spots = [sample[spacing] for sample in study["samples"] if not sample["survived"] and is_drawable(sample[spacing])]
     axes.plot(spots, [level] * len(spots), linestyle="none", marker="x", color=look.colour, markersize=6, markeredgewidth=1.6,
               transform=axes.get_xaxis_transform(), zorder=4, clip_on=False)
     return bool(spots)
@@ -252,21 +253,30 @@ def legend_text(study):
     word = STATUSES[status(study)][0]
     parts = [f"order {fit}" if fit else "", f"expected {band}" if band else "", word]
     tier = f" ({study['tier']})" if study["tier_matters"] else ""
-    return f"{shorten(study['scheme'], 28)}{tier}: " + ", ".join(filter(None, parts))
+    name = f"{shorten(study['scheme'], 28)}{tier}: "
+    return fitting(name + ", ".join(filter(None, parts)),
+                   name + ", ".join(filter(None, [f"{fit} ({band})" if fit and band else fit or band, word])))
 
 
-def convergence(name, group, field, studies, scheme_looks, stamp):
-    """Error against h, all schemes of a group on one pair of axes; None where no rung has an error."""
+LEGEND_LETTERS = 66  # that the width of a picture holds
+
+
+def fitting(*texts):
+    """The first of the texts that fits into a legend; failing all, the last one cut."""
+    return next((text for text in texts if len(text) <= LEGEND_LETTERS), shorten(texts[-1], LEGEND_LETTERS))
+
+
+def convergence(name, group, field, studies, scheme_looks, stamp, spacing="h"):
+    """Error against h or dx, all schemes of a group on one pair of axes; None where no rung has an error."""
     norm = fit_norm(studies)
-    curves = [(study, errors(study, norm), scheme_looks[study["scheme"]]) for study in studies]
+    curves = [(study, errors(study, norm, spacing), scheme_looks[study["scheme"]]) for study in studies]
     every = [point for _, points, _ in curves for point in points]
     if not every:
         return None
     relative = any(sample["relative"] for study in studies for sample in study["samples"])
-    rungs = [sample["h"] for study in studies for sample in study["samples"] if is_drawable(sample["h"])]
+    rungs = [sample[spacing] for study in studies for sample in study["samples"] if is_drawable(sample[spacing])]
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
-        canvas, axes = new_axes(f"{shorten(group, 48)}: {field}", "smoothing length h [m]", error_label(field, norm, relative),
-                                len(curves))
+        canvas, axes = new_axes(f"{shorten(group, 48)}: {field}", SPACINGS[spacing], error_label(field, norm, relative), len(curves))
         x_limits = set_log_axis(axes.xaxis, min(rungs), max(rungs))
         # Room below the points for the yardstick and the crosses.
         lowest, highest = min(e for _, e in every), max(e for _, e in every)
@@ -279,7 +289,7 @@ def convergence(name, group, field, studies, scheme_looks, stamp):
                       markeredgecolor="white", markeredgewidth=0.6, markersize=6.5, zorder=5)
             if study["fit"]["order"] is None:
                 axes.plot([h for h, _ in points], [e for _, e in points], look.line, color=look.colour, linewidth=0.8, alpha=0.7)
-            ended = draw_early_ends(axes, study, look, 0.035 + 0.045 * index)
+            ended = draw_early_ends(axes, study, spacing, look, 0.035 + 0.045 * index)
             handles.append(Line2D([], [], color=look.colour, linestyle=look.line if len(points) > 1 else "none",
                                   marker=look.marker if points or not ended else "x",
                                   markersize=5.5, label=plain(legend_text(study))))
@@ -287,24 +297,24 @@ def convergence(name, group, field, studies, scheme_looks, stamp):
         axes.set_xlim(x_limits)
         axes.set_ylim(y_limits)
         add_legend(canvas, handles)
-        described = "; ".join(f"{study['scheme']}: {describe(study, points)}" for study, points, _ in curves)
+        described = "; ".join(f"{study['scheme']}: {describe(study, points, spacing)}" for study, points, _ in curves)
         title = f"Convergence of {field}, {group}"
-        svg = finish(canvas, name, title, f"Log-log plot of the {error_label(field, norm, relative)} against h. {described}.", stamp)
-    return Picture(name, convergence_caption(field, norm, relative, studies), svg)
+        svg = finish(canvas, name, title, f"Log-log plot of the {error_label(field, norm, relative)} against {spacing}. {described}.", stamp)
+    return Picture(name, convergence_caption(field, norm, relative, studies, spacing), svg)
 
 
-def describe(study, points):
+def describe(study, points, spacing):
     """A curve in words, for those who do not see it."""
     if not points:
         return "every rung ended early"
     (h1, e1), (h2, e2) = points[0], points[-1]
-    course = f"error {e1:.2e} at h = {h1:.3g} to {e2:.2e} at h = {h2:.3g}" if len(points) > 1 else f"error {e1:.2e} at h = {h1:.3g}"
+    course = f"error {e1:.2e} at {spacing} = {h1:.3g}" + (f" to {e2:.2e} at {spacing} = {h2:.3g}" if len(points) > 1 else "")
     fit = fitted_order(study["fit"])
     return course + (f", fitted order {fit}" if fit else "") + f", {STATUSES[status(study)][0]}"
 
 
-def convergence_caption(field, norm, relative, studies):
-    caption = f"{sentence(error_label(field, norm, relative))} against h."
+def convergence_caption(field, norm, relative, studies, spacing):
+    caption = f"{sentence(error_label(field, norm, relative))} against {spacing}."
     fitted = any(study["fit"]["order"] is not None for study in studies)
     banded = any(expectation(study) and study["fit"]["order"] is not None for study in studies)
     if fitted:
@@ -358,7 +368,7 @@ def cost_plot(name, front, relative, scheme_looks, stamp):
                          markersize=6.5, markerfacecolor=look.colour if leading else "white", markeredgewidth=1.2)
             axes.plot([c for c, _ in points], [e for _, e in points], zorder=4 if leading else 3, **drawn)
             label = shorten(scheme, 24) + (f": {front_label(row)}" if row else "")
-            handles.append(Line2D([], [], label=plain(label), **drawn))
+            handles.append(Line2D([], [], label=plain(fitting(label, label.split(" at error ")[0])), **drawn))
         axes.set_xlim(x_limits)
         axes.set_ylim(y_limits)
         add_legend(canvas, handles)
@@ -367,3 +377,41 @@ def cost_plot(name, front, relative, scheme_looks, stamp):
         svg = finish(canvas, name, title, f"Log-log plot. {described}.", stamp)
     return Picture(name, f"{sentence(error_label(front['field'], front['norm'], relative))} against {cost_title}. "
                          "Down and left is better; bold and filled is on the front.", svg)
+
+
+# ------------------------------------------------------------------------------------------------ consistency sums
+
+def consistency(name, sums, stamp):
+    """The worst sums over neighbours against h/dx, one pair of curves a jitter; None where nothing can be drawn."""
+    sets = {}
+    for row in sums:
+        sets.setdefault((row["result"]["file"], row["jitter"]), []).append(row)
+    values = [row[key] for row in sums for key in ("worst_zeroth", "worst_first") if is_drawable(row[key])]
+    ratios = [row["h_over_dx"] for row in sums if is_drawable(row["h_over_dx"])]
+    if not values or not ratios:
+        return None
+    with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
+        canvas, axes = new_axes("Consistency sums (Oger 2007)", "h/dx", "worst misfit", 2 * len(sets))
+        x_limits = set_log_axis(axes.xaxis, min(ratios), max(ratios))
+        y_limits = set_log_axis(axes.yaxis, min(values), max(values))
+        set_ticks(axes.xaxis, rung_ticks(ratios), lambda value: f"{value:.3g}")
+        handles = [consistency_curve(axes, rows, key, look) for rows, look in zip(sets.values(), looks(sets).values())
+                   for key in ("worst_zeroth", "worst_first")]
+        axes.set_xlim(x_limits)
+        axes.set_ylim(y_limits)
+        add_legend(canvas, handles)
+        svg = finish(canvas, name, "Consistency sums against h/dx", f"Log-log plot, misfits from {min(values):.2e} to {max(values):.2e}.", stamp)
+    return Picture(name, "Largest component of |h Σ V ∇W| (zeroth, filled) and of |Σ V (rⱼ − r) ⊗ ∇W − I| (first, open) over "
+                         "arbitrary points. Integrals would give 0.", svg)
+
+
+def consistency_curve(axes, rows, key, look):
+    """One curve; returns its handle for the legend."""
+    zeroth = key == "worst_zeroth"
+    drawn = dict(color=look.colour, linestyle="-" if zeroth else "--", marker=look.marker,
+                 markerfacecolor=look.colour if zeroth else "white")
+    points = sorted((row["h_over_dx"], row[key]) for row in rows if is_drawable(row["h_over_dx"]) and is_drawable(row[key]))
+    axes.plot([x for x, _ in points], [y for _, y in points], **drawn)
+    jitter = numbers.general(rows[0]["jitter"])
+    label = f"{'zeroth' if zeroth else 'first'} sum, " + ("lattice" if jitter == "0" else f"jittered by {jitter} dx")
+    return Line2D([], [], label=plain(label), **drawn)

@@ -42,6 +42,16 @@ NORMS = [
               "(log-log interpolation, no extrapolation)."),
 ]
 
+OPERATOR_WORDS = [
+    ("h/dx fixed", "Both go to zero together: the smoothing error falls, and what disorder does to the sums stays or grows."),
+    ("h fixed", "dx goes to zero alone: the error against the operator's own limit, so that the smoothing error takes no part."),
+    ("h ~ sqrt(dx)", "The joint path: h goes to zero more slowly than dx."),
+    ("order", "Always in dx, along every path. Theory may demand zero or a negative one: such an operator does not converge."),
+    ("undetermined", "Particles whose neighbours do not determine the operator, over all seeds; they take no part in the norms."),
+    ("seed spread", "Largest over smallest L2 of the seeds, minus 1."),
+    ("properties", "What the operator claims besides an order (exactness, symmetry, sums that vanish), each held to its bound."),
+]
+
 
 def early_ends(study):
     """The rungs of a study that did not survive."""
@@ -187,13 +197,13 @@ def all_schemes(results):
 
 @dataclass
 class Finding:
-    """One line of the findings: how bad (0 is worst), what, where, why, and the study it links to."""
+    """One line of the findings: how bad (0 is worst), what, where, why, and the anchor it links to."""
     severity: int
     status: str
     where: str
     title: str
     reasons: list
-    study: dict
+    anchor: str
 
 
 def early_end_reasons(group, scheme):
@@ -219,31 +229,31 @@ def early_end_finding(group, scheme):
     expected = all(expects_early_end(study) for study in studies)
     title = "ended early, as expected" if expected else "ended early"
     return [Finding(4 if expected else 1, "lost-expected" if expected else "lost", f"{group.label}, {scheme}", title,
-                    early_end_reasons(group, scheme), studies[0])]
+                    early_end_reasons(group, scheme), studies[0]["anchor"])]
 
 
-def verdict_finding(group, study):
-    fit, place = study["fit"], f"{group.label}, {study['scheme']}, {study['field']}"
+def verdict_finding(place, study):
+    fit = study["fit"]
     kind = status(study)
     reason = fit["reason"] or "no reason given"
     if kind == "waived":
-        return [Finding(3, kind, place, f"{fit['verdict']}, waived", [reason, "Waiver: " + fit["waiver"]], study)]
+        return [Finding(3, kind, place, f"{fit['verdict']}, waived", [reason, "Waiver: " + fit["waiver"]], study["anchor"])]
     if kind in ("fail", "inconclusive"):
-        return [Finding(0 if kind == "fail" else 2, kind, place, fit_line(study), [reason], study)]
+        return [Finding(0 if kind == "fail" else 2, kind, place, fit_line(study), [reason], study["anchor"])]
     if expects_early_end(study) and not early_ends(study):
-        return [Finding(2, kind, place, "survived, though the study expects it to end early", [reason], study)]
+        return [Finding(2, kind, place, "survived, though the study expects it to end early", [reason], study["anchor"])]
     return []
 
 
 def findings(groups):
-    """All findings, worst first; equal ones in the order of the page."""
+    """All findings on schemes, in the order of the page."""
     found = []
     for group in groups:
         for scheme in group.schemes:
             found += early_end_finding(group, scheme)
         for study in group.studies:
-            found += verdict_finding(group, study)
-    return sorted(found, key=lambda finding: finding.severity)
+            found += verdict_finding(f"{group.label}, {study['scheme']}, {study['field']}", study)
+    return found
 
 
 def waivers(groups):
@@ -251,27 +261,31 @@ def waivers(groups):
     return [study for group in groups for study in group.studies if study["fit"]["waiver"]]
 
 
-def counts(groups):
+def counts(studies):
     """Number of studies by status."""
     tally = dict.fromkeys(STATUSES, 0)
-    for group in groups:
-        for study in group.studies:
-            tally[status(study)] += 1
+    for study in studies:
+        tally[status(study)] += 1
     return tally
 
 
-def summary(groups, found):
-    """The report in one sentence."""
-    tally = counts(groups)
+def verdict_counts(studies):
+    """The number of order verdicts in words, and how many of each."""
+    tally = counts(studies)
     judged = sum(tally[key] for key in ("pass", "fail", "inconclusive", "waived"))
     words = [f"{tally[key]} {STATUSES[key][0]}" for key in ("pass", "fail", "inconclusive", "waived") if tally[key]]
-    cases = unique(group.case for group in groups)
-    schemes = unique(study["scheme"] for group in groups for study in group.studies)
+    text = f"{plural(judged, 'order verdict')}" + (f" ({', '.join(words)})" if words else "")
+    return text + (f", {tally['none']} without an order verdict" if tally["none"] else "")
+
+
+def summary(groups, found):
+    """What became of the schemes, in one sentence; nothing without schemes."""
+    if not groups:
+        return ""
+    studies = [study for group in groups for study in group.studies]
+    cases, schemes = unique(group.case for group in groups), unique(study["scheme"] for study in studies)
     text = f"{plural(len(schemes), 'scheme')} on {plural(len(cases), 'case')} in {plural(len(groups), 'setting')}: "
-    text += f"{plural(judged, 'order verdict')}" + (f" ({', '.join(words)})" if words else "")
-    silent = tally["none"]
-    if silent:
-        text += f", {silent} without an order verdict"
+    text += verdict_counts(studies)
     ends = [finding for finding in found if finding.status in ("lost", "lost-expected")]
     if ends:
         expected = sum(finding.status == "lost-expected" for finding in ends)

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import jinja2
 from markupsafe import Markup
 
-from . import figures, findings, numbers
+from . import checks, figures, findings, numbers
+from .ladders import NORM_COLUMNS, front_table, ladder_table
+from .operators import Workbench
 from .tables import Column, Names, Span, Table
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -14,9 +16,10 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 
 @dataclass
 class Report:
-    """All files of a report by relative name, and the number of studies by status."""
+    """All files of a report by relative name, the number of studies by status, and [passing, all] of each kind of check."""
     files: dict
     counts: dict
+    checks: dict
 
 
 # ----------------------------------------------------------------------------------------------- table builders
@@ -25,22 +28,13 @@ SAMPLE_COLUMNS = [
     Column("n", "n", "integer"), Column("h", "h", "aligned", "m", "$h$"), Column("dx", "dx", "aligned", "m", r"$\Delta x$"),
     Column("particles", "N", "integer", latex="$N$"), Column("dt", "Δt", "scientific", "s", r"$\Delta t$"),
     Column("steps", "steps", "integer"),
-    Column("l1", "L1", "scientific", latex="$L_1$"), Column("order_l1", "order", "order"),
-    Column("l2", "L2", "scientific", latex="$L_2$"), Column("order_l2", "order", "order"),
-    Column("linf", "L∞", "scientific", latex=r"$L_\infty$"), Column("order_linf", "order", "order"),
+    *NORM_COLUMNS,
     Column("seconds", "seconds", "significant"), Column("pair_evaluations", "pair evaluations", "scientific"),
 ]
 # In the CSV only: everything else that a sample holds.
 MORE_SAMPLE_COLUMNS = [Column(key, key, shown=False) for key in (
     "l1_abs", "l2_abs", "linf_abs", "relative", "l2_spread", "seeds", "seconds_spread", "repeats", "cpu_seconds",
     "solver_iterations", "matrix_entries", "particle_steps", "survived", "diagnosis")]
-
-
-def verdict_words(study):
-    """The verdict as text for the files, with its waiver."""
-    fit = study["fit"]
-    word = findings.STATUSES[findings.status(study)][0]
-    return f"{fit['verdict']}, waived: {fit['waiver']}" if findings.status(study) == "waived" else word
 
 
 def study_title(study):
@@ -59,22 +53,10 @@ def error_kind(study):
 
 def errors_table(names, study):
     """The ladder of one scheme and field: errors and orders by rung."""
-    fit = study["fit"]
-    rows, spans = [], {}
-    for index, sample in enumerate(study["samples"]):
-        row = dict(sample)
-        for key in ("order_l1", "order_l2", "order_linf"):
-            row[key] = fit[key][index] if fit[key] else None
-        if not sample["survived"]:
-            spans[index] = Span("l1", "order_linf", "ended early: " + (sample["diagnosis"] or "no diagnosis given"))
-        rows.append(row)
     columns = SAMPLE_COLUMNS + ([Column("l2_spread", "seed spread", "significant")] if has_spread(study) else [])
     columns = columns + [column for column in MORE_SAMPLE_COLUMNS if column.key not in {c.key for c in columns}]
-    notes = [findings.fit_line(study) + (" " if fit["order"] is not None else ": ") + verdict_words(study)]
-    if fit["reason"]:
-        notes.append(f"Reason: {fit['reason']}")
-    return Table(names.unique(study["group"], study["scheme"], study["field"], "errors"),
-                 f"{error_kind(study)}, {study_title(study)}", columns, rows, notes, spans, style="wide", context=study["group"])
+    return ladder_table(names.unique(study["group"], study["scheme"], study["field"], "errors"),
+                        f"{error_kind(study)}, {study_title(study)}", study["group"], study, columns)
 
 
 def has_spread(study):
@@ -179,16 +161,6 @@ def comparison_table(names, group):
     spans = {index: Span(span.first, span.last, span.text) for index, span in spans.items() if {span.first, span.last} <= shown}
     return Table(names.unique(group.label, "schemes"), f"the schemes side by side at n = {numbers.integer(n)}",
                  columns, rows, spans=spans, context=group.label)
-
-
-def front_table(names, front):
-    rows = [dict(row, verdict="on the front" if row["on_front"] else "off the front") for row in front["rows"]]
-    cost = {"seconds": "run time", "pair_evaluations": "pair evaluations"}.get(front["cost"], front["cost"])
-    return Table(names.unique(front["group"], front["field"], front["cost"], "front"),
-                 f"front of {front['field']} error against {cost}",
-                 [Column("scheme", "scheme"), Column("verdict", "front"), Column("on_front", "on_front", shown=False),
-                  Column("slower_by", "costs ×", "significant"), Column("at_error", "at error", "scientific"),
-                  Column("than", "compared with")], rows, context=front["group"])
 
 
 def claims_table(names, group):
@@ -297,11 +269,16 @@ def provenance_value(result, key):
     return "" if provenance[key] is None else numbers.general(provenance[key])
 
 
-def waivers_table(names, waived):
+def waivers_table(names, waived, more):
+    """The studies with a waiver, and `more` rows of the same kind."""
     rows = [{"group": study["group"], "scheme": study["scheme"], "field": study["field"], "verdict": study["fit"]["verdict"],
-             "waiver": study["fit"]["waiver"]} for study in waived]
-    return Table(names.unique("waivers"), "Verdicts that a study accepts against its own demand", [Column("group", "case and settings"), Column("scheme", "scheme"),
-                 Column("field", "field"), Column("verdict", "verdict"), Column("waiver", "reason of the waiver")], rows, style="cards")
+             "waiver": study["fit"]["waiver"]} for study in waived] + more
+    if not rows:
+        return None
+    columns = [Column("group", "what"), Column("scheme", "scheme"), Column("field", "field"), Column("verdict", "verdict"),
+               Column("waiver", "reason of the waiver")]
+    return Table(names.unique("waivers"), "What is accepted against its own demand",
+                 [column for column in columns if any(row.get(column.key) for row in rows)], rows, style="cards")
 
 
 # ------------------------------------------------------------------------------------------------------ the page
@@ -313,7 +290,7 @@ def short_revision(provenance):
 
 def stamp_of(results):
     """What stands small on every figure: the revisions whose numbers it shows."""
-    labels = findings.unique(f"sphvv {result['provenance']['version']}, revision {short_revision(result['provenance'])}"
+    labels = findings.unique(f"{' '.join(filter(None, ['sphvv', result['provenance']['version']]))}, revision {short_revision(result['provenance'])}"
                              for result in results)
     return "; ".join(labels[:2]) + ("; …" if len(labels) > 2 else "")
 
@@ -327,6 +304,7 @@ class Builder:
         self.looks = figures.looks(findings.all_schemes(results))
         self.table_names, self.figure_names = Names(), Names()
         self.tables, self.pictures = [], []
+        self.workbench = Workbench(self)
 
     def keep(self, table):
         if table is not None:
@@ -337,6 +315,10 @@ class Builder:
         if picture is not None:
             self.pictures.append(picture)
         return picture
+
+    @staticmethod
+    def stamp(results):
+        return stamp_of(results)
 
     def name_studies(self):
         """Gives each study its anchor, and marks those that only their tier tells apart."""
@@ -381,7 +363,7 @@ class Builder:
         relative = any(sample["relative"] for study in group.of_field(front["field"]) for sample in study["samples"])
         name = self.figure_names.unique(group.label, front["field"], "error-against-" + front["cost"])
         return {"front": front, "plot": self.draw(figures.cost_plot(name, front, relative, self.looks, stamp_of([front["result"]]))),
-                "table": self.keep(front_table(self.table_names, front)),
+                "table": self.keep(front_table(self.table_names, front, "scheme")),
                 "file": front["result"]["file"] if len(self.results["files"]) > 1 else ""}
 
     @staticmethod
@@ -401,16 +383,30 @@ class Builder:
     def view(self):
         """Everything the template needs."""
         self.name_studies()
-        found = findings.findings(self.groups)
-        waived = findings.waivers(self.groups)
-        cases = findings.unique(group.case for group in self.groups)
-        overview = {"table": self.keep(matrix_table(self.table_names, self.groups)), "matrix": self.matrix_view(),
-                    "findings": found, "provenance": self.keep(provenance_table(self.table_names, self.results["files"])),
-                    "waivers": self.keep(waivers_table(self.table_names, waived)) if waived else None}
-        return {"title": "Verification of " + (listed(cases) if len(cases) <= 3 else f"{len(cases)} cases"), "summary": findings.summary(self.groups, found),
+        found = sorted(findings.findings(self.groups) + self.workbench.findings() + checks.findings(self.results),
+                       key=lambda finding: finding.severity)
+        more_waivers = self.workbench.waiver_rows() + checks.waiver_rows(self.results)
+        overview = {"table": self.keep(matrix_table(self.table_names, self.groups)) if self.groups else None,
+                    "matrix": self.matrix_view(), "operator_matrices": self.workbench.matrices(), "findings": found,
+                    "provenance": self.keep(provenance_table(self.table_names, self.results["files"])),
+                    "waivers": self.keep(waivers_table(self.table_names, findings.waivers(self.groups), more_waivers))}
+        clauses = [self.workbench.summary(), *checks.summary(self.results)]
+        return {"title": "Verification of " + listed(self.subjects()), "summary": findings.summary(self.groups, found),
+                "checks_summary": "; ".join(filter(None, clauses)),
                 "stamp": stamp_of(self.results["files"]), "files": self.results["files"], **overview,
                 "groups": [self.group_view(group) for group in self.groups],
-                "statuses": findings.STATUSES, "glossary": findings.GLOSSARY, "norms": findings.NORMS}
+                "operators": self.workbench.view(), "checks": checks.view(self),
+                "statuses": findings.STATUSES, "glossary": findings.GLOSSARY, "norms": findings.NORMS,
+                "operator_words": findings.OPERATOR_WORDS}
+
+    def subjects(self):
+        """What the report is on, for its title."""
+        cases = findings.unique(group.case for group in self.groups)
+        kernels = findings.unique(check["kernel"] for check in self.results["kernel_checks"] or self.results["known_errors"])
+        counted = [(len(self.workbench.names), "operator"), (len(kernels), "kernel"),
+                   (len(self.results["published_figures"]) if not self.workbench.names else 0, "published figure"),
+                   (len(self.results["seeded_faults"]), "seeded fault")]
+        return (cases if len(cases) <= 3 else [f"{len(cases)} cases"]) + [findings.plural(*each) for each in counted if each[0]]
 
 
 def listed(words):
@@ -424,6 +420,8 @@ def render(view):
     environment.filters["as_svg"] = lambda picture: Markup(picture.svg)
     environment.filters["integer"] = numbers.integer
     environment.filters["general"] = numbers.general
+    environment.filters["fitted_order"] = findings.fitted_order
+    environment.filters["breakable"] = lambda name: Markup("_<wbr>").join(name.split("_"))
     with open(os.path.join(HERE, "page.css"), encoding="utf-8") as stream:
         style = Markup(stream.read())
     return environment.get_template("page.html.j2").render(style=style, **view)
@@ -439,4 +437,5 @@ def build_report(results):
         files[f"tables/{table.name}.tex"] = table.to_latex()
     for picture in builder.pictures:
         files[f"figures/{picture.name}.svg"] = '<?xml version="1.0" encoding="UTF-8"?>\n' + picture.svg
-    return Report(files, findings.counts(builder.groups))
+    studies = [study for group in builder.groups for study in group.studies]
+    return Report(files, findings.counts(studies + builder.workbench.studies), checks.counts(results))

@@ -1,8 +1,9 @@
-"""Result files (reports/FORMAT.md): read an HDF5 file into a plain tree of dicts and lists, check it, merge several.
+"""Result files (reports/FORMAT.md): read an HDF5 or JSON file into a plain tree of dicts and lists, check it, merge several.
 
 Every failure is a ResultError whose text is one sentence naming the file and what is wrong with it.
 """
 
+import json
 import math
 import multiprocessing
 import os
@@ -41,11 +42,39 @@ CURVE = {"scheme": "text", "n": "numbers", "error": "numbers", "cost": "numbers"
 FRONT_ROW = {"scheme": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
 FRONT = {"group": "text", "field": "text", "norm": "text", "cost": "text", "curves": [CURVE], "rows": [FRONT_ROW]}
 CLAIM = {"group": "text", "id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "agrees": "flag"}
+OPERATOR = {"name": "text", "summary": "text", "formula": "text", "source": "text", "approximates": "text", "order_source": "text"}
+OPERATOR_SAMPLE = {"n": "number", "h": "number", "dx": "number", "particles": "number", "l1": "number", "l2": "number",
+                   "linf": "number", "l1_abs": "number", "l2_abs": "number", "linf_abs": "number", "l2_spread": "number",
+                   "seeds": "number", "undetermined": "number", "pair_evaluations": "number"}
+OPERATOR_STUDY = {"operator": "text", "approximates": "text", "dimension": "number", "arrangement": "text", "path": "text",
+                  "kernel": "text", "tier": "text", "expected?": EXPECTED, "fit": FIT, "samples": [OPERATOR_SAMPLE]}
+OPERATOR_PROPERTY = {"operator": "text", "dimension": "number", "property": "text", "arrangement": "text", "value": "number",
+                     "bound": "number", "at_least": "flag", "passes": "flag"}
+OPERATOR_COST = {"operator": "text", "dimension": "number", "nanoseconds_per_pair": "number", "spread": "number",
+                 "pairs": "number"}
+OPERATOR_CURVE = {"operator": "text", "error": "numbers", "cost": "numbers"}
+OPERATOR_FRONT_ROW = {"operator": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
+OPERATOR_FRONT = {"approximates": "text", "cost": "text", "curves": [OPERATOR_CURVE], "rows": [OPERATOR_FRONT_ROW]}
+KERNEL_CHECK = {"kernel": "text", "dimension": "number", "check": "text", "value": "number", "expected": "number",
+                "tolerance": "number", "passes": "flag", "why": "text"}
+PUBLISHED_FIGURE = {"id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "value": "number",
+                    "agrees": "flag", "waiver": "text"}
+CONSISTENCY_SUM = {"jitter": "number", "h_over_dx": "number", "neighbours": "number", "worst_zeroth": "number",
+                   "worst_first": "number"}
+SEEDED_FAULT = {"name": "text", "file": "text", "summary": "text", "caught": "flag", "caught_by": "text", "seconds": "number"}
+WORKBENCH = {"operators?": [OPERATOR], "operator_studies?": [OPERATOR_STUDY], "operator_properties?": [OPERATOR_PROPERTY],
+             "operator_costs?": [OPERATOR_COST], "operator_fronts?": [OPERATOR_FRONT], "kernel_checks?": [KERNEL_CHECK],
+             "known_errors?": [KERNEL_CHECK], "published_figures?": [PUBLISHED_FIGURE],
+             "consistency_sums?": [CONSISTENCY_SUM], "seeded_faults?": [SEEDED_FAULT]}
 PROVENANCE = {"version": "text", "revision": "text", "tree_clean": "flag", "compiler?": "text", "flags?": "text",
               "build_type?": "text", "cpu?": "text", "threads?": "number", "libraries?": "object", "started?": "text",
               "seconds?": "number"}
 RESULT = {"format": "text", "format_version": "number", "command": "text", "provenance": PROVENANCE,
-          "cases": [CASE], "studies": [STUDY], "runs": [RUN], "fronts": [FRONT], "claims?": [CLAIM]}
+          "cases": [CASE], "studies": [STUDY], "runs": [RUN], "fronts": [FRONT], "claims?": [CLAIM],
+          **WORKBENCH}
+# A file that holds none of these says nothing that a report could show.
+EVIDENCE = ("studies", "operator_studies", "operator_properties", "kernel_checks", "known_errors", "published_figures",
+            "seeded_faults")
 VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", "NONE")
 
 
@@ -134,14 +163,20 @@ def refuse_unreadable(path):
         raise ResultError(f"{path}: no permission to read it")
     if os.path.getsize(path) == 0:
         raise ResultError(f"{path}: the file is empty, not a result file")
-    if not h5py.is_hdf5(path):
-        raise ResultError(f"{path}: not an HDF5 file, so not a result file of sphvv")
+    if not h5py.is_hdf5(path) and not is_json(path):
+        raise ResultError(f"{path}: not an HDF5 file and not JSON, so not a result file of sphvv")
+
+
+def is_json(path):
+    """Whether the file begins as a JSON object does."""
+    with open(path, "rb") as stream:
+        return stream.read(64).lstrip()[:1] == b"{"
 
 
 def refuse_foreign(path, attributes):
     """Refuses another format and a newer version before looking at anything else."""
     if clean_text(scalar(attributes.get("format", ""))) != FORMAT:
-        raise ResultError(f"{path}: an HDF5 file, but not a result file of sphvv (its member 'format' is not \"{FORMAT}\")")
+        raise ResultError(f"{path}: not a result file of sphvv (its member 'format' is not \"{FORMAT}\")")
     version = scalar(attributes.get("format_version", 0))
     if not isinstance(version, (int, float)) or isinstance(version, bool) or version < 1:
         raise ResultError(f"{path}: its format_version is not a version that ever was (this report reads 1 to {FORMAT_VERSION})")
@@ -150,9 +185,26 @@ def refuse_foreign(path, attributes):
                           f"{FORMAT_VERSION}); use the report of that version")
 
 
+def plain(value):
+    """A JSON value with the texts cleaned as those of an HDF5 file are."""
+    if isinstance(value, dict):
+        return {clean_text(name): plain(entry) for name, entry in value.items()}
+    return [plain(entry) for entry in value] if isinstance(value, list) else scalar(value)
+
+
+def read_json(path):
+    """The JSON twin of a result file."""
+    with open(path, encoding="utf-8") as stream:
+        tree = plain(json.load(stream))
+    refuse_foreign(path, tree)
+    return tree
+
+
 def read_tree(path):
     """The whole file as a tree. Raises ResultError."""
     try:
+        if is_json(path):
+            return read_json(path)
         with h5py.File(path, "r") as stream:
             refuse_foreign(path, stream.attrs)
             return read_group(stream)
@@ -249,13 +301,13 @@ def check_list(trees, schema, path):
         check_object(tree, schema, f"{path}[{index}]")
 
 
-def check_study(study, path):
+def check_study(study, path, needed):
     """What the schema cannot say: known verdicts, rungs that say which they are, as many pairwise orders as rungs."""
     fit = study["fit"]
     if fit["verdict"] not in VERDICTS:
         raise ValueError(f"{path}.fit.verdict is '{fit['verdict']}', not one of {', '.join(VERDICTS)}")
     for index, sample in enumerate(study["samples"]):
-        for name in ("n", "h"):
+        for name in needed:
             if sample[name] is None:
                 raise ValueError(f"{path}.samples[{index}].{name} is null")
     for name in ("order_l1", "order_l2", "order_linf"):
@@ -264,20 +316,22 @@ def check_study(study, path):
 
 
 def check_curve(curve, path):
-    if not len(curve["n"]) == len(curve["error"]) == len(curve["cost"]):
-        raise ValueError(f"{path}: n, error and cost differ in length")
+    if len({len(column) for column in curve.values() if isinstance(column, list)}) > 1:
+        raise ValueError(f"{path}: its arrays differ in length")
 
 
 def check_result(tree):
     """Checks the tree of a file; ValueError names the first member that is missing or wrong."""
     check_object(tree, RESULT, "")
-    for index, study in enumerate(tree["studies"]):
-        check_study(study, f"studies[{index}]")
-    for index, front in enumerate(tree["fronts"]):
-        for number, curve in enumerate(front["curves"]):
-            check_curve(curve, f"fronts[{index}].curves[{number}]")
-    if not tree["studies"]:
-        raise ValueError("it holds no study")
+    for kind, needed in (("studies", ("n", "h")), ("operator_studies", ("n", "h", "dx"))):
+        for index, study in enumerate(tree[kind]):
+            check_study(study, f"{kind}[{index}]", needed)
+    for kind in ("fronts", "operator_fronts"):
+        for index, front in enumerate(tree[kind]):
+            for number, curve in enumerate(front["curves"]):
+                check_curve(curve, f"{kind}[{index}].curves[{number}]")
+    if not any(tree[kind] for kind in EVIDENCE):
+        raise ValueError("it holds no study, no check and no seeded fault")
 
 
 def read_result(path):
@@ -294,28 +348,51 @@ def read_result(path):
 
 # ---------------------------------------------------------------------------------------------------- merging
 
-def study_key(study):
-    return study["case"], study["group"], study["scheme"], study["field"], study["tier"]
+# What identifies a study, and the part of it that a message names.
+KEYS = {"studies": ("case", "group", "scheme", "field", "tier"),
+        "operator_studies": ("operator", "dimension", "arrangement", "path", "kernel", "tier")}
+REPEATABLE = {"operator_properties", "kernel_checks", "known_errors", "published_figures", "consistency_sums", "seeded_faults"}
+NAMED = {"cases", "operators"}  # these explain what others refer to by name: any file's entry will do
+
+
+def refuse_twice(results, kind):
+    """Refuses a study that stands in two files."""
+    holder = {}
+    for result in results:
+        for study in result[kind]:
+            key = tuple(study[name] for name in KEYS[kind])
+            if key in holder:
+                words = [str(part) for part in (key[1:] if kind == "studies" else key) if part]
+                raise ResultError(f"{result['file']}: the study {', '.join(words)} is already in {holder[key]}; "
+                                  "give each study once")
+            holder[key] = result["file"]
+
+
+def distinct(entries):
+    """The entries without those that another file repeats in every value."""
+    kept = []
+    for entry in entries:
+        if not any(all(entry[key] == other[key] for key in entry if key != "result") for other in kept):
+            kept.append(entry)
+    return kept
 
 
 def merge(results):
-    """Several result files as one: {"files", "cases", "studies", "runs", "fronts", "claims"}.
+    """Several result files as one: {"files": results} and every list of RESULT, "cases" and "operators" by name.
 
     A study that stands in two files is refused: which of the two a reader sees must not depend on the order of the
-    arguments. Each study, run, front and claim remembers its file. Fronts stay apart, since a front only ranks the schemes
-    that one file holds.
+    arguments. Each entry remembers its file. Fronts stay apart, since a front only ranks what one file holds. A check that
+    several files hold with the same outcome counts once.
     """
-    merged = {"files": results, "cases": {}, "studies": [], "runs": [], "fronts": [], "claims": []}
-    holder = {}
-    for result in results:
-        for case in result["cases"]:
-            merged["cases"].setdefault(case["name"], case)
-        for study in result["studies"]:
-            key = study_key(study)
-            if key in holder:
-                raise ResultError(f"{result['file']}: the study {', '.join(filter(None, key[1:]))} is already in "
-                                  f"{holder[key]}; give each study once")
-            holder[key] = result["file"]
-        for kind in ("studies", "runs", "fronts", "claims"):
-            merged[kind] += [dict(entry, result=result) for entry in result[kind] or []]
+    merged = {"files": results}
+    for kind in KEYS:
+        refuse_twice(results, kind)
+    for kind in (name.rstrip("?") for name, schema in RESULT.items() if isinstance(schema, list)):
+        if kind in NAMED:
+            merged[kind] = {}
+            for entry in (entry for result in results for entry in result[kind]):
+                merged[kind].setdefault(entry["name"], entry)
+        else:
+            entries = [dict(entry, result=result) for result in results for entry in result[kind]]
+            merged[kind] = distinct(entries) if kind in REPEATABLE else entries
     return merged

@@ -269,5 +269,86 @@ def small():
     return tree
 
 
+# ------------------------------------------------------------------------------------------------ operator workbench
+
+OPERATORS = [("gradient_plain", "gradient"), ("gradient_renormalised", "gradient"), ("laplacian_morris", "laplacian"),
+             ("shifting_vector", "nothing")]
+# Dimension, arrangement, path, and the order of each operator that has one.
+OPERATOR_LADDERS = [(2, "square", "h/dx fixed", (2.0, 2.0, 2.0)), (2, "jittered 10 %", "h/dx fixed", (-1.0, 1.6, -1.0)),
+                    (2, "jittered 20 %", "h ~ sqrt(dx)", (0.5, 1.0, 0.5)), (3, "jittered 10 %", "h/dx fixed", (-1.0, 1.6, -1.0))]
+
+
+def operator_study(operator, kind, ladder, order):
+    dimension, arrangement, path, _ = ladder
+    samples = []
+    for n in (40, 56, 80, 112, 160):
+        error = 0.1 * (40 / n) ** order * (1 + 0.02 * wobble(operator, arrangement, n))
+        samples.append({"n": n, "h": 1.3 / n, "dx": 1.0 / n, "particles": n ** dimension, "l1": 0.8 * error, "l2": error,
+                        "linf": 3 * error, "l1_abs": 1.6 * error, "l2_abs": 2 * error, "linf_abs": 5 * error,
+                        "l2_spread": None if arrangement == "square" else 0.02, "seeds": 1 if arrangement == "square" else 5,
+                        "undetermined": 0.0, "pair_evaluations": 21.0 * n ** dimension})
+    fit = {"norm": "l2", "verdict": "PASS", "reason": "inside the band",
+           **{f"order_{norm}": pairwise(samples, norm) for norm in ("l1", "l2", "linf")}}
+    fit["order"], fit["ci95"] = slope(samples)
+    return {"operator": operator, "approximates": kind, "dimension": dimension, "arrangement": arrangement, "path": path,
+            "kernel": "quintic_spline", "tier": "nightly", "samples": samples, "fit": fit,
+            "expected": {"low": order - 0.25, "high": order + 0.25, "source": "Quinlan, Basa & Lastiwka 2006"}}
+
+
+def operator_property(operator, name, value, passes=True):
+    return {"operator": operator, "dimension": 2, "property": name, "arrangement": "jittered 20 %, free sides", "value": value,
+            "bound": 1e-12, "at_least": False, "passes": passes}
+
+
+def operator_front(cost):
+    curves = [{"operator": name, "error": [0.1, 0.2], "cost": [scale * 1e5, scale * 4e5]}
+              for name, scale in (("gradient_plain", 1.0), ("gradient_renormalised", 0.8))]
+    rows = [{"operator": "gradient_plain", "on_front": False, "slower_by": 1.25, "at_error": 0.1, "than": "gradient_renormalised"},
+            {"operator": "gradient_renormalised", "on_front": True, "slower_by": None, "at_error": None, "than": ""}]
+    return {"approximates": "gradient", "cost": cost, "curves": curves, "rows": rows}
+
+
+def kernel_check(kernel, dimension, check, value, expected, passes=True):
+    return {"kernel": kernel, "dimension": dimension, "check": check, "value": value, "expected": expected, "tolerance": 1e-12,
+            "passes": passes, "why": "definition"}
+
+
+def workbench():
+    """A file of `sphvv operators`, and the seeded faults, with every kind of failure in it."""
+    tree = {**realistic(), "command": "sphvv operators --tier nightly --out operators.h5",
+            **{name: [] for name in ("cases", "studies", "runs", "fronts", "claims")}}
+    studies = [operator_study(name, kind, ladder, order) for ladder in OPERATOR_LADDERS
+               for (name, kind), order in zip(OPERATORS, ladder[3])]
+    studies[0]["fit"].update(verdict="FAIL", reason="the whole interval is outside: a lattice sum is off")
+    studies[4]["fit"].update(verdict="INCONCLUSIVE", reason="the residuals bend: a floor")
+    kernels = [kernel_check(kernel, dimension, check, value, value) for kernel in ("cubic_spline", "wendland_c2")
+               for check, value in (("unit integral", 1.0), ("second moment", 0.5), ("transform", 0.0)) for dimension in (1, 2, 3)]
+    kernels += [kernel_check("cubic_spline", 0, "smoothness", 1.1, 2.0, passes=False), kernel_check("wendland_c2", 0, "smoothness", 2.0, 2.0)]
+    figure = {"text": "error of the Laplacian at a free edge", "source": "Xu 2009 §3.5", "value": 57.0, "ours": "57 %"}
+    fault = {"file": "solver/operators/laplacian_morris.cpp", "seconds": 84.2}
+    tree.update(
+        operators=[{"name": name, "summary": f"the {name}", "formula": "sum_j V_j A_j gradW_ij", "source": "Xu 2009 §2.1.2",
+                    "approximates": kind, "order_source": "moments"} for name, kind in OPERATORS],
+        operator_studies=studies,
+        operator_properties=[operator_property("gradient_plain", "exact for constants", 3e-16),
+                             operator_property("gradient_renormalised", "exact for linears", 2e-3, passes=False),
+                             operator_property("shifting_vector", "zero on a lattice", 1e-17)],
+        operator_costs=[{"operator": name, "dimension": 2, "nanoseconds_per_pair": 0.8 + index, "spread": 0.1, "pairs": 72944.0}
+                        for index, (name, _) in enumerate(OPERATORS)],
+        operator_fronts=[operator_front("nanoseconds"), operator_front("pair_evaluations")],
+        kernel_checks=kernels,
+        known_errors=[kernel_check("wendland_c2", 3, "known error: Wendland C2 in 3-D, Xu", 0.6666667, 1.0),
+                      kernel_check("quintic_spline", 3, "known error: quintic spline, 359", 1.0, 1.0, passes=False)],
+        published_figures=[{"id": "XU-LAP row 0", "published": "57 %", "agrees": True, "waiver": "", **figure},
+                           {"id": "XU-LAP surface", "published": "40 %", "agrees": False, "waiver": "another h/dx", **figure},
+                           {"id": "XU-LAP row 1", "published": "3.2 %", "agrees": False, "waiver": "", **figure},
+                           {"id": "XU-LAP row 2", "published": "57.1 %", "agrees": True, "waiver": "left over", **figure}],
+        consistency_sums=[{"jitter": jitter, "h_over_dx": ratio, "neighbours": 12.6 * ratio ** 2, "worst_zeroth": (0.02 + jitter) / ratio,
+                           "worst_first": (0.01 + jitter) / ratio} for jitter in (0.0, 0.2) for ratio in (1.2, 2.0, 3.0)],
+        seeded_faults=[{"name": "morris_factor", "summary": "a factor 2 is lost", "caught": True, "caught_by": "operators", **fault},
+                       {"name": "morris_eta", "summary": "eta is not squared", "caught": False, "caught_by": "", **fault}])
+    return tree
+
+
 if __name__ == "__main__":
     write(sys.argv[1], realistic())

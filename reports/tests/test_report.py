@@ -12,11 +12,11 @@ import unittest
 import xml.dom.minidom
 
 import synthetic
-from sphvv_report import findings, numbers, output
+from sphvv_report import findings, numbers, output, results
 from sphvv_report.__main__ import main
 from sphvv_report.tables import Column, Names, Table, latex_text, markdown_text
 
-VOID = {"meta", "link", "br", "img", "input", "hr"}
+VOID = {"meta", "link", "br", "wbr", "img", "input", "hr"}
 HOSTILE = '<script>alert("1")</script> & 50% of $x_1$ {#~^\\} | `c`'
 
 
@@ -83,61 +83,20 @@ class WithFolder(unittest.TestCase):
         return all_files(self.path(name))
 
 
-class Content(unittest.TestCase):
-    """One report of a tree with every verdict in it, asked many questions."""
+class WholePage:
+    """One report of the files `trees()`, with so many `pictures`, and what every page owes."""
 
     @classmethod
     def setUpClass(cls):
         with tempfile.TemporaryDirectory() as folder:
-            source = synthetic.write(os.path.join(folder, "results.h5"), synthetic.realistic())
-            cls.status, cls.printed, cls.errors = run(source, "--out", os.path.join(folder, "new", "out"))
+            sources = [synthetic.write(os.path.join(folder, f"results-{index}.h5"), tree) for index, tree in enumerate(cls.trees())]
+            cls.status, cls.printed, cls.errors = run(*sources, "--out", os.path.join(folder, "new", "out"))
             cls.files = all_files(os.path.join(folder, "new", "out"))
-            assert run(source, "--out", os.path.join(folder, "again"), "--quiet") == (0, "", "")
+            assert run(*sources, "--out", os.path.join(folder, "again"), "--quiet") == (0, "", "")
             cls.files_again = all_files(os.path.join(folder, "again"))
         cls.source = cls.files["index.html"].decode("utf-8")
         cls.page = Page(cls.source)
         cls.text = cls.page.all_text()
-
-    def test_says_where_the_page_is(self):
-        self.assertEqual((self.status, self.errors), (0, ""))
-        self.assertTrue(self.printed.endswith("out/index.html\n"))
-
-    def test_every_verdict_is_a_word(self):
-        for word in ("PASS", "FAIL", "INCONCLUSIVE", "WAIVED", "ENDED EARLY", "no verdict"):
-            self.assertRegex(self.source, rf'<span class="chip [a-z-]+"><span aria-hidden="true">.</span> {word}</span>')
-
-    def test_findings_are_sorted_and_give_reasons(self):
-        listed = self.source[self.source.index('<ol class="findings">'):self.source.index('id="waivers"')]
-        order = re.findall(r'<li class="([a-z-]+)">', listed)
-        self.assertEqual(order, ["fail", "lost", "inconclusive", "waived", "lost-expected"])
-        for reason in ("the sound speed of 10 U limits the pressure", "residuals show a floor", "carries acoustic noise",
-                       "n = 40: minimum spacing 0.12 dx below 0.2 dx at step 120", "as expected"):
-            self.assertIn(reason, listed)
-
-    def test_waiver_keeps_the_verdict_visible(self):
-        section = self.source[self.source.index('<section id="waivers">'):self.source.index('<section id="provenance">')]
-        self.assertIn("FAIL", section)
-        self.assertIn("see issue 3", section)
-        self.assertIn("The verdict is FAIL.", self.text)
-
-    def test_summary_counts(self):
-        self.assertIn("8 order verdicts (5 PASS, 1 FAIL, 1 INCONCLUSIVE, 1 WAIVED)", self.text)
-        self.assertIn("2 ladders ended early, 1 of them as expected", self.text)
-
-    def test_fit_lines(self):
-        self.assertRegex(self.text, r"fit: order 1\.\d\d ± 0\.\d\d \(expected 1\.0…2\.2, Xu 2009, §4\.3\.3\)")
-        self.assertIn("(expected ≥ 0.9, ", self.text)
-        self.assertIn("2 rungs show errors, but bear no order verdict", self.text)
-
-    def test_ended_rung_shows_its_diagnosis_in_place_of_errors(self):
-        self.assertRegex(self.source, r'<td class="remark" colspan="6"><div>ended early: minimum spacing')
-
-    def test_group_settings_override_defaults(self):
-        self.assertIn("re,1000.0,1,", self.files["tables/taylor_green-re-1000__parameters.csv"].decode())
-
-    def test_groups_sort_as_numbers(self):
-        places = [self.source.index(f">taylor_green re={re}</h2>") for re in (10, 100, 1000)]
-        self.assertEqual(places, sorted(places))
 
     def test_no_request_and_no_script(self):
         for tag, attributes in self.page.elements:
@@ -185,7 +144,7 @@ class Content(unittest.TestCase):
     def test_every_picture_is_on_the_page_and_on_disk(self):
         pictures = {name: content.decode("utf-8") for name, content in self.files.items() if name.startswith("figures/")}
         self.assertEqual(len(pictures), sum(tag == "figure" for tag, _ in self.page.elements))
-        self.assertEqual(len(pictures), 24)
+        self.assertEqual(len(pictures), self.pictures)
         for name, svg in pictures.items():
             with self.subTest(name):
                 self.assertIn(svg.split("\n", 1)[1], self.source)
@@ -196,6 +155,64 @@ class Content(unittest.TestCase):
                 self.assertIn("revision 4f1c2d7e9ab0", svg)
                 self.assertNotIn("DOCTYPE", svg)
                 self.assertLess(len(svg), 40_000)
+
+    def test_two_runs_give_the_same_bytes(self):
+        self.assertEqual(self.files, self.files_again)
+
+    def test_manifest_lists_what_is_there(self):
+        listed = set(self.files["manifest.txt"].decode().split())
+        self.assertEqual(listed, set(self.files) - {"manifest.txt"})
+
+
+class Content(WholePage, unittest.TestCase):
+    """One report of a tree with every verdict in it, asked many questions."""
+
+    pictures = 24
+
+    @staticmethod
+    def trees():
+        return [synthetic.realistic()]
+
+    def test_says_where_the_page_is(self):
+        self.assertEqual((self.status, self.errors), (0, ""))
+        self.assertTrue(self.printed.endswith("out/index.html\n"))
+
+    def test_every_verdict_is_a_word(self):
+        for word in ("PASS", "FAIL", "INCONCLUSIVE", "WAIVED", "ENDED EARLY", "no verdict"):
+            self.assertRegex(self.source, rf'<span class="chip [a-z-]+"><span aria-hidden="true">.</span> {word}</span>')
+
+    def test_findings_are_sorted_and_give_reasons(self):
+        listed = self.source[self.source.index('<ol class="findings">'):self.source.index('id="waivers"')]
+        order = re.findall(r'<li class="([a-z-]+)">', listed)
+        self.assertEqual(order, ["fail", "lost", "inconclusive", "waived", "lost-expected"])
+        for reason in ("the sound speed of 10 U limits the pressure", "residuals show a floor", "carries acoustic noise",
+                       "n = 40: minimum spacing 0.12 dx below 0.2 dx at step 120", "as expected"):
+            self.assertIn(reason, listed)
+
+    def test_waiver_keeps_the_verdict_visible(self):
+        section = self.source[self.source.index('<section id="waivers">'):self.source.index('<section id="provenance">')]
+        self.assertIn("FAIL", section)
+        self.assertIn("see issue 3", section)
+        self.assertIn("The verdict is FAIL.", self.text)
+
+    def test_summary_counts(self):
+        self.assertIn("8 order verdicts (5 PASS, 1 FAIL, 1 INCONCLUSIVE, 1 WAIVED)", self.text)
+        self.assertIn("2 ladders ended early, 1 of them as expected", self.text)
+
+    def test_fit_lines(self):
+        self.assertRegex(self.text, r"fit: order 1\.\d\d ± 0\.\d\d \(expected 1\.0…2\.2, Xu 2009, §4\.3\.3\)")
+        self.assertIn("(expected ≥ 0.9, ", self.text)
+        self.assertIn("2 rungs show errors, but bear no order verdict", self.text)
+
+    def test_ended_rung_shows_its_diagnosis_in_place_of_errors(self):
+        self.assertRegex(self.source, r'<td class="remark" colspan="6"><div>ended early: minimum spacing')
+
+    def test_group_settings_override_defaults(self):
+        self.assertIn("re,1000.0,1,", self.files["tables/taylor_green-re-1000__parameters.csv"].decode())
+
+    def test_groups_sort_as_numbers(self):
+        places = [self.source.index(f">taylor_green re={re}</h2>") for re in (10, 100, 1000)]
+        self.assertEqual(places, sorted(places))
 
     def test_figures_keep_their_text(self):
         svg = self.files["figures/taylor_green-re-100__velocity__convergence.svg"].decode()
@@ -215,16 +232,131 @@ class Content(unittest.TestCase):
                 else:
                     self.assertEqual(row[key], value or "")
 
-    def test_two_runs_give_the_same_bytes(self):
-        self.assertEqual(self.files, self.files_again)
-
     def test_glossary_explains_every_word(self):
         explained = {word for word, _ in findings.GLOSSARY}
         self.assertEqual(explained, {word for word, _ in findings.STATUSES.values()})
 
-    def test_manifest_lists_what_is_there(self):
-        listed = set(self.files["manifest.txt"].decode().split())
-        self.assertEqual(listed, set(self.files) - {"manifest.txt"})
+    def test_nothing_of_operators_where_there_are_none(self):
+        for word in ("perators", "Kernels", "Published figures", "Consistency sums", "eeded"):
+            self.assertNotIn(word, self.text)
+
+
+class Operators(WholePage, unittest.TestCase):
+    """A file of `sphvv operators` alone."""
+
+    pictures = 9  # gradient and laplacian: two ladders in 2-D and one in 3-D; two fronts; the consistency sums
+
+    @staticmethod
+    def trees():
+        return [synthetic.workbench()]
+
+    def section(self, first, last):
+        return Page(self.source[self.source.index(f'id="{first}"'):self.source.index(f'id="{last}"')]).all_text()
+
+    def table(self, name):
+        return list(csv.DictReader(io.StringIO(self.files[f"tables/{name}.csv"].decode("utf-8"))))
+
+    def test_title_and_counts(self):
+        self.assertIn("Verification of 4 operators, 2 kernels and 2 seeded faults", self.text)
+        for words in ("4 operators on 4 ladders: 12 order verdicts (10 PASS, 1 FAIL, 1 INCONCLUSIVE)", "2 of 3 declared properties hold",
+                      "19 of 20 kernel checks pass", "1 of 2 wrong constants in print are refused",
+                      "2 of 4 published figures agree, 1 waived", "1 of 2 seeded faults are caught."):
+            self.assertIn(words, self.text)
+
+    def test_every_failure_is_a_finding(self):
+        """On the first screen, worst first, each linked to where it stands."""
+        listed = self.source[self.source.index('<ol class="findings">'):self.source.index("Orders of the operators")]
+        self.assertEqual(re.findall(r'<li class="([a-z-]+)">', listed), ["fail"] * 7 + ["inconclusive", "waived"])
+        for words in ("gradient_plain, 2-D square, h/dx fixed", "a lattice sum is off", "the residuals bend: a floor",
+                      "exact for linears does not hold", "measured 2.00e\u221203, must be ≤ 1.00e\u221212", "smoothness is 1.1, expected 2",
+                      "quintic spline, 359 was not refused", "published 3.2 %, ours 57 %", "agrees, although it is known not to",
+                      "morris_eta", "XU-LAP surface: published 40 %, ours 57 %"):
+            self.assertIn(words, Page(listed).all_text())
+
+    def test_matrix(self):
+        matrix = self.source[self.source.index("Orders of the operators, 2-D"):self.source.index('id="waivers"')]
+        self.assertIn("Orders of the operators, 3-D", matrix)
+        self.assertEqual(len(re.findall('class="chip fail"', matrix)), 2)  # a ladder and a property
+        self.assertIn("1 of 1", Page(matrix).all_text())
+        row = self.table("operator-orders__2-D")[0]
+        self.assertEqual((row["operator"], row["arrangement"], row["verdict"]), ("gradient_plain", "square", "FAIL"))
+
+    def test_operator_section(self):
+        text = self.section("operator-gradient_renormalised", "operator-laplacian_morris")
+        for words in ("sum_j V_j A_j gradW_ij", "Xu 2009 §2.1.2", "0 of 1 hold", "2-D jittered 10 %, h/dx fixed, order 1.59",
+                      "undetermined", "Quinlan, Basa"):
+            self.assertIn(words, text)
+        self.assertIn('<details id="ladder__gradient_plain__2-D__square-h-dx-fixed" open>', self.source)
+        self.assertEqual(self.source.count("<details "), 12 + 1)  # ladders, and the properties that fail
+        rows = self.table("operators__gradient_renormalised__2-D-jittered-10-h-dx-fixed")
+        self.assertEqual((rows[0]["n"], rows[0]["order_l2"], rows[0]["l2_spread"]), ("40", "", "0.02"))
+        self.assertAlmostEqual(float(rows[0]["h_over_dx"]), 1.3)
+
+    def test_figures_draw_the_expected_slope(self):
+        svg = self.files["figures/operators__gradient__2-D-jittered-10-h-dx-fixed.svg"].decode()
+        self.assertRegex(svg, r">gradient_plain: order −1\.0\d ± 0\.\d\d, expected −1\.25…−0\.75, PASS</text>")
+        self.assertIn("particle spacing dx [m]", svg)
+        self.assertIn("gradient_renormalised: on the front", self.files["figures/operators__gradient__error-against-nanoseconds.svg"].decode())
+
+    def test_cost(self):
+        self.assertEqual(self.table("operator-costs")[1]["nanoseconds_per_pair"], "1.8")
+        front = [name for name in self.files if name.endswith("gradient__nanoseconds__front.csv")]
+        self.assertIn("gradient_plain,off the front,0,1.25,0.1,gradient_renormalised", self.files[front[0]].decode())
+
+    def test_kernels(self):
+        text = self.section("kernels", "published_figures")
+        self.assertIn("9 of 10; FAILS smoothness any dimension", text)
+        self.assertIn("NOT REFUSED", text)
+        self.assertIn("0.6666667", text)
+        self.assertEqual(self.table("kernels")[1]["unit integral 3"], "1.0")
+
+    def test_published_figures(self):
+        self.assertEqual([row["verdict"] for row in self.table("published-figures")],
+                         ["agrees", "WAIVED: does not agree", "DISAGREES", "AGREES, though waived"])
+        self.assertIn("another h/dx", self.section("waivers", "provenance"))
+
+    def test_consistency_sums(self):
+        self.assertEqual(len(self.table("consistency-sums")), 6)
+        self.assertIn("zeroth sum, jittered by 0.2 dx", self.files["figures/consistency-sums.svg"].decode())
+
+    def test_seeded_faults(self):
+        text = self.section("seeded_faults", "glossary")
+        self.assertIn("Caught: 1 of 2, 50.0 %.", text)
+        self.assertEqual([row["name"] for row in self.table("seeded-faults")], ["morris_eta", "morris_factor"])
+
+
+class Merged(WholePage, unittest.TestCase):
+    """Files of both kinds in one page."""
+
+    pictures = 24 + 9
+
+    @staticmethod
+    def trees():
+        second = synthetic.workbench()
+        second["operator_studies"] = [dict(study, tier="quick") for study in second["operator_studies"]]
+        second["operator_fronts"] = []
+        return [synthetic.realistic(), synthetic.workbench(), second]
+
+    def test_both_summaries(self):
+        self.assertIn("8 order verdicts (5 PASS", self.text)
+        self.assertIn("4 operators on 4 ladders: 24 order verdicts", self.text)
+
+    def test_equal_checks_count_once(self):
+        self.assertIn("2 of 3 declared properties hold", self.text)
+
+    def test_tiers_are_told_apart(self):
+        self.assertIn("2-D square, h/dx fixed, quick tier", self.text)
+
+    def test_entries_of_several_files_name_them(self):
+        costs = list(csv.DictReader(io.StringIO(self.files["tables/operator-costs.csv"].decode())))
+        self.assertEqual([row["result_file"] for row in costs], ["results-1.h5"] * 4 + ["results-2.h5"] * 4)
+
+
+def hostile(tree):
+    """The tree with every text turned hostile, verdicts excepted."""
+    if isinstance(tree, dict):
+        return {key: value if key == "verdict" else hostile(value) for key, value in tree.items()}
+    return [hostile(entry) for entry in tree] if isinstance(tree, list) else f"{tree} {HOSTILE}" if isinstance(tree, str) else tree
 
 
 class Hostile(WithFolder):
@@ -258,6 +390,16 @@ class Hostile(WithFolder):
             elif name.endswith(".tex"):
                 self.assertNotIn("<", text)
                 self.assertNotRegex(text, r"(?<!\\)\$x_1")
+
+    def test_strings_of_the_workbench_cannot_leave_their_place(self):
+        tree = hostile(synthetic.workbench())
+        tree.update(format="sphvv-results", provenance=synthetic.PROVENANCE)
+        files = self.report(tree)
+        page = Page(files["index.html"].decode("utf-8"))
+        self.assertEqual((page.faults, page.open), ([], []))
+        self.assertNotIn("script", {tag for tag, _ in page.elements})
+        self.assertFalse([name for name in files if name.endswith(".md") and b"<script>" in files[name]])
+        self.assertFalse([name for name in files if name.endswith(".tex") and b"<" in files[name]])
 
     def test_names_of_files_stay_in_their_folder(self):
         tree = synthetic.small()
@@ -326,6 +468,39 @@ class Odd(WithFolder):
         tree = synthetic.small()
         tree["studies"][0]["expected"]["fate"] = "ends_early"
         self.assertIn("survived, though the study expects it to end early", self.report(tree)["index.html"].decode())
+
+    def test_claims(self):
+        tree = synthetic.small()
+        claim = {"group": "taylor_green re=100", "text": "first order", "published": "1", "source": "Xu 2009, §4.3", "ours": "1.08"}
+        tree["claims"] = [dict(claim, id="X1", agrees=True), dict(claim, id="X2", agrees=False)]
+        files = self.report(tree)
+        self.assertIn("Published claims", Page(files["index.html"].decode()).all_text())
+        rows = list(csv.DictReader(io.StringIO(files["tables/taylor_green-re-100__claims.csv"].decode())))
+        self.assertEqual([(row["id"], row["verdict"]) for row in rows], [("X1", "agrees"), ("X2", "DISAGREES")])
+
+    def test_operator_without_anything_else(self):
+        """One operator was asked for; the others are only explained. No statement of it, no order, one rung without an error."""
+        tree = synthetic.workbench()
+        study = tree["operator_studies"][0]
+        study.update(expected={}, fit={"verdict": "NONE"}, samples=[dict(study["samples"][0], l1=None, l2=None, linf=None)])
+        tree.update({name.rstrip("?"): [] for name in results.WORKBENCH}, operator_studies=[study])
+        text = Page(self.report(tree)["index.html"].decode()).all_text()
+        self.assertIn("1 operator on 1 ladder: 0 order verdicts, 1 without an order verdict", text)
+        self.assertIn("holds no statement of the operator gradient_plain", text)
+
+    def test_each_kind_of_evidence_alone(self):
+        for member in results.EVIDENCE[1:]:
+            tree = synthetic.workbench()
+            tree.update({name.rstrip("?"): [] for name in results.WORKBENCH if name != member + "?"})
+            with self.subTest(member):
+                self.report(tree, member)
+
+    def test_seeded_faults_alone_as_json(self):
+        tree = {key: value for key, value in synthetic.workbench().items() if not key.startswith(("operator", "kernel", "known", "publ", "cons"))}
+        with open(self.path("faults.json"), "w", encoding="utf-8") as stream:
+            json.dump(tree, stream)
+        self.assertEqual(run(self.path("faults.json"), "--out", self.path("out"), "--quiet"), (0, "", ""))
+        self.assertIn("Verification of 2 seeded faults", all_files(self.path("out"))["index.html"].decode())
 
     def test_waived_pass_is_printed(self):
         tree = synthetic.small()

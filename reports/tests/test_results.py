@@ -1,5 +1,6 @@
 """Reading: what was written comes back; what is not a result file is refused with one sentence."""
 
+import json
 import math
 import os
 import signal
@@ -55,6 +56,15 @@ class Reading(InFolder):
         self.assertEqual(read["runs"][0]["stages"], written["runs"][0]["stages"])
         self.assertIs(read["runs"][0]["settings"]["shifting"], False)
 
+    def test_json_twin(self):
+        """The same tree from either form."""
+        tree = synthetic.workbench()
+        for study in tree["operator_studies"]:
+            for name in ("order_l1", "order_l2", "order_linf"):
+                study["fit"][name][0] = None  # JSON has no NaN
+        twin = self.file("results.json", json.dumps(tree).encode())
+        self.assertEqual(dict(read_result(twin), file=""), dict(read_result(synthetic.write(self.path, tree)), file=""))
+
     def test_null_members_are_filled_in(self):
         study = read_result(self.path)["studies"][0]
         self.assertEqual((study["expected"]["fate"], study["fit"]["waiver"]), ("", ""))
@@ -72,7 +82,7 @@ class Reading(InFolder):
 
     def test_unknown_members_are_let_pass(self):
         tree = synthetic.small()
-        tree["seeded_faults"] = [{"name": "eta"}]
+        tree["stability_maps"] = [{"name": "eta"}]
         tree["studies"][0]["profile"] = {"x": [1.0, 2.0]}
         read_result(synthetic.write(self.path, tree))
 
@@ -169,6 +179,33 @@ class Refusing(InFolder):
         self.refuse_changed(lambda tree: tree["studies"][0]["fit"].update(order_l2=[1.0]), "order_l2", "4 rungs")
         self.refuse_changed(lambda tree: tree["studies"][0]["samples"][0].update(n=None), "samples[0].n is null")
 
+    def test_wrong_members_of_the_workbench(self):
+        def refuse(change, *words):
+            tree = synthetic.workbench()
+            change(tree)
+            self.assert_refused(synthetic.write(self.path, tree), *words)
+
+        refuse(lambda tree: tree["operator_studies"][1].pop("path"), "operator_studies[1].path is missing")
+        refuse(lambda tree: tree["operator_studies"][0]["samples"][2].update(dx=None), "operator_studies[0].samples[2].dx is null")
+        refuse(lambda tree: tree["operator_studies"][0]["fit"].update(verdict="FINE"), "FINE", "PASS")
+        refuse(lambda tree: tree["operator_studies"][0]["fit"].update(order_l1=[1.0]), "order_l1", "5 rungs")
+        refuse(lambda tree: tree["operator_fronts"][0]["curves"][0].update(cost=[1.0]), "operator_fronts[0].curves[0]", "length")
+        for kind in ("operators", "operator_properties", "operator_costs", "kernel_checks", "known_errors", "published_figures",
+                     "consistency_sums", "seeded_faults"):
+            for key in synthetic.workbench()[kind][0]:
+                with self.subTest(kind=kind, key=key):
+                    tree = synthetic.workbench()
+                    del tree[kind][0][key]
+                    with self.assertRaisesRegex(ValueError, rf"^{kind}\[0\]\.{key} is missing$"):
+                        results.check_result(tree)
+        refuse(lambda tree: tree.update(operator_costs=[{"operator": 7}]), "operator_costs[0].operator is not a text")
+        refuse(lambda tree: tree.update(seeded_faults=[dict(tree["seeded_faults"][0], caught="yes")]), "seeded_faults[0].caught is not a boolean")
+
+    def test_json_that_is_no_result(self):
+        self.assert_refused(self.file("cut.json", b'{"format": "sphvv-results", "cases": ['), "damaged")
+        self.assert_refused(self.file("other.json", b'{"format": "geojson"}'), "not a result file of sphvv")
+        self.assert_refused(self.file("deep.json", b'{"a": ' + b"[" * 100_000), "damaged")
+
     def test_columns_of_different_length(self):
         with h5py.File(self.path, "a") as stream:
             del stream["studies/0000/samples/steps"]
@@ -182,6 +219,13 @@ class Merging(InFolder):
         with self.assertRaises(ResultError) as caught:
             merge([read_result(self.path), read_result(other)])
         for word in ("results.h5", "other.h5", "taylor_green re=100", "wcsph"):
+            self.assertIn(word, str(caught.exception))
+
+    def test_each_operator_study_once(self):
+        paths = [synthetic.write(os.path.join(self.folder, name), synthetic.workbench()) for name in ("a.h5", "b.h5")]
+        with self.assertRaises(ResultError) as caught:
+            merge([read_result(path) for path in paths])
+        for word in ("a.h5", "b.h5", "gradient_plain, 2, square, h/dx fixed, quintic_spline, nightly"):
             self.assertIn(word, str(caught.exception))
 
     def test_files_add_up(self):

@@ -32,6 +32,7 @@ ResultTree operator_study(const std::string& name, const std::string& arrangemen
             {"path", "h/dx fixed"},
             {"kernel", "quintic_spline"},
             {"tier", "quick"},
+            {"expected", {{"low", 0.75}, {"high", 1.25}}},
             {"fit", {{"order", 1.0}, {"ci95", 0.01}, {"verdict", "PASS"}}},
             {"samples", samples}};
 }
@@ -155,6 +156,14 @@ TEST(Compare, EveryKindOfChangeIsSeen) {
               1);
 }
 
+TEST(Compare, AWeakerDemandIsSeen) {
+    const auto wider = after([](ResultTree& t) { t["operator_studies"][0]["expected"]["low"] = -2.0; });
+    EXPECT_EQ(count(wider, Change::demand), 1);
+    EXPECT_TRUE(wider.fails());
+    EXPECT_EQ(count(after([](ResultTree& t) { t["operator_properties"][0]["bound"] = 1.0; }), Change::demand),
+              1);
+}
+
 TEST(Compare, WhatIsInformationalDoesNotFail) {
     const Comparison slower = after([](ResultTree& t) { t["studies"][0]["samples"][0]["seconds"] = 1.0; });
     EXPECT_EQ(count(slower, Change::run_time), 1);
@@ -166,6 +175,55 @@ TEST(Compare, WhatIsInformationalDoesNotFail) {
     const Comparison noise = after([](ResultTree& t) { t["operator_properties"][0]["value"] = 9e-13; });
     EXPECT_EQ(count(noise, Change::round_off), 1);
     EXPECT_FALSE(noise.fails());
+}
+
+TEST(Compare, BitwiseEqualIsNotSaidOfWhatIsNotTheSame) {
+    // h takes part in the order but not in the errors.
+    const Comparison finer = after([](ResultTree& t) { t["operator_studies"][0]["fit"]["order"] = 1.04; });
+    EXPECT_EQ(count(finer, Change::round_off), 1);
+    EXPECT_FALSE(finer.fails());
+    const Comparison lost = after([](ResultTree& t) { t["operator_studies"][0]["fit"].erase("order"); });
+    EXPECT_EQ(count(lost, Change::order), 1);
+    EXPECT_TRUE(lost.fails());
+    const Comparison rung =
+        after([](ResultTree& t) { t["operator_studies"][0]["samples"].push_back(sample(320, 0.1)); });
+    EXPECT_EQ(count(rung, Change::added), 1);
+    // A study that stands twice in the file.
+    const Comparison twice = after([](ResultTree& t) {
+        const ResultTree copy = t["operator_studies"][0];
+        t["operator_studies"].push_back(copy);
+    });
+    EXPECT_EQ(count(twice, Change::added), 1);
+}
+
+TEST(Compare, AKernelCheckIsNoBetterThanItsTolerance) {
+    const auto estimated = [](double value, double tolerance) {
+        return ResultTree{{"kernel_checks",
+                           {{{"kernel", "wendland_c6"},
+                             {"dimension", 0},
+                             {"check", "smoothness"},
+                             {"value", value},
+                             {"tolerance", tolerance},
+                             {"passes", true}}}}};
+    };
+    EXPECT_FALSE(compare(estimated(5.9479, 0.3), estimated(5.94797, 0.3)).fails());
+    EXPECT_TRUE(compare(estimated(5.9, 0.3), estimated(5.5, 0.3)).fails());
+    // A check that was loosened does not excuse a new value.
+    EXPECT_TRUE(compare(estimated(1, 1e-12), estimated(1.1, 0.3)).fails());
+    EXPECT_EQ(reduced_for_baseline(estimated(6, 0.3))["kernel_checks"][0]["tolerance"], 0.3);
+}
+
+TEST(Compare, EntriesWithoutIdentityAreRefused) {
+    const auto refused = [](const auto& edit) {
+        ResultTree tree = result();
+        edit(tree);
+        EXPECT_THROW(compare(tree, tree), UserError) << tree.dump();
+    };
+    refused([](ResultTree& t) { t["operator_studies"] = 5; });
+    refused([](ResultTree& t) { t["operator_studies"][0].erase("operator"); });
+    refused([](ResultTree& t) { t["operator_studies"][0]["samples"][0].erase("n"); });
+    refused([](ResultTree& t) { t["operator_studies"][0]["samples"][0]["n"] = "20"; });
+    refused([](ResultTree& t) { t["operator_properties"][0].erase("property"); });
 }
 
 TEST(Compare, TheTableStaysShort) {
