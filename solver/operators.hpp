@@ -140,26 +140,30 @@ void sweep(const OperatorInput<Dim>& input, std::span<double* const> result, con
     sweep<Dim>(input, [&](int i) { detail::store(at(i), i, result); });
 }
 
+namespace detail {
+template <class Formula, int Dim>
+concept AppliesItself = requires(const OperatorInput<Dim>& input, std::span<double* const> result) {
+    Formula::template apply<Dim>(input, result);
+};
+
+template <class Formula, int Dim>
+void apply(const OperatorInput<Dim>& input, std::span<double* const> result) {
+    if constexpr (AppliesItself<Formula, Dim>) {
+        Formula::template apply<Dim>(input, result);
+    } else {
+        sweep<Dim>(input, result, [&](int i) { return Formula::template at<Dim>(input.row(i), i, input); });
+    }
+}
+} // namespace detail
+
 /// Completes a declaration with the formula, a type with
 ///   template <int Dim> static VALUE at(const Row<Dim>&, int i, const OperatorInput<Dim>&)
 /// for one sweep (VALUE double, Vector<Dim> or Matrix<Dim>), or, for more than one sweep,
 ///   template <int Dim> static void apply(const OperatorInput<Dim>&, std::span<double* const> result).
 template <class Formula>
 Operator with_formula(Operator declaration) {
-    const auto apply = []<int Dim>(const OperatorInput<Dim>& input, std::span<double* const> result) {
-        if constexpr (requires { Formula::template apply<Dim>(input, result); }) {
-            Formula::template apply<Dim>(input, result);
-        } else {
-            sweep<Dim>(input, result,
-                       [&](int i) { return Formula::template at<Dim>(input.row(i), i, input); });
-        }
-    };
-    declaration.apply2 = [](const OperatorInput<2>& input, std::span<double* const> result) {
-        decltype(apply){}.template operator()<2>(input, result);
-    };
-    declaration.apply3 = [](const OperatorInput<3>& input, std::span<double* const> result) {
-        decltype(apply){}.template operator()<3>(input, result);
-    };
+    declaration.apply2 = detail::apply<Formula, 2>;
+    declaration.apply3 = detail::apply<Formula, 3>;
     return declaration;
 }
 

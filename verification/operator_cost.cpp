@@ -45,6 +45,7 @@ std::vector<OperatorCost> measure_costs(std::span<const solver::Operator* const>
                                              solver::result_components(op->approximates, 2),
                                              std::vector<double>(scene.set.size()));
                                          std::vector<double*> result;
+                                         result.reserve(columns.size());
                                          for (std::vector<double>& column : columns) {
                                              result.push_back(column.data());
                                          }

@@ -50,7 +50,7 @@ Judged hold_against_exact(const OperatorScene<Dim>& scene, const PlaneWave<Dim>&
     std::vector<double> volume;
     Judged judged;
     for (const int i : scene.set.judged) {
-        if (std::isnan(found[0][i])) {
+        if (std::ranges::any_of(found, [&](const auto& column) { return std::isnan(column[i]); })) {
             ++judged.undetermined;
             continue;
         }
@@ -349,6 +349,9 @@ std::vector<OperatorStudy> run_operator_studies(std::span<const Operator* const>
     std::copy_if(operators.begin(), operators.end(), std::back_inserter(with_limit),
                  [](const Operator* op) { return op->approximates != Approximates::nothing; });
     std::vector<OperatorStudy> studies;
+    if (with_limit.empty()) {
+        return studies;
+    }
     std::size_t rungs = 0;
     for (const OperatorLadder& ladder : ladders) {
         rungs += ladder.n.size();

@@ -210,6 +210,10 @@ ParticleSet<Dim> truncated(int n, bool corner) {
     constexpr std::array<double, 3> place =
         Dim == 2 ? std::array{0.4, 0.6773, 0.} : std::array{0.3, 0.4, 0.3773};
     ParticleSet<Dim> set{unit_box<Dim>(false), {}, {}, {}, 1.0 / n};
+    if (place[0] + depth * set.dx > 1 || place[1] + depth * set.dx > 1) {
+        throw std::invalid_argument("a truncated block of " + std::to_string(n) +
+                                    " spacings leaves its box; accepted: 40 and more");
+    }
     std::array<int, Dim> along;
     along.fill(corner ? depth : width);
     along[0] = depth;

@@ -884,7 +884,8 @@ double continuous_factor(const Kernel& kernel, int dim, double eta_over_h) {
     const std::unique_ptr<gsl_integration_glfixed_table, void (*)(gsl_integration_glfixed_table*)> table(
         gsl_integration_glfixed_table_alloc(nodes), gsl_integration_glfixed_table_free);
     double integral = 0;
-    for (double low = 0; low < kernel.support; low += 0.5) {
+    for (int unit = 0; unit < 2 * kernel.support; ++unit) {
+        const double low = unit / 2.;
         const double high = std::min(low + 0.5, kernel.support);
         for (std::size_t k = 0; k < nodes; ++k) {
             double q = 0;
