@@ -48,9 +48,12 @@ void add_report(CLI::App& app, Act& act) {
     const auto options = std::make_shared<Options>();
     CLI::App* command =
         app.add_subcommand("report", "result files in, one self-contained page with tables and pictures out");
-    command->add_option("files", options->files, "result files of sphvv verify")
+    command
+        ->add_option(
+            "files", options->files,
+            "result files of sphvv verify and operators (HDF5 or JSON), and of scripts/seeded_faults")
         ->required()
-        ->type_name("FILE.h5");
+        ->type_name("FILE");
     command->add_option("--out", options->out, "folder for index.html, tables/ and figures/")
         ->required()
         ->type_name("DIR");
