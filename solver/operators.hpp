@@ -62,9 +62,9 @@ Value undetermined() {
 /// (Quinlan, Basa & Lastiwka 2006; project rules of evidence §4), is what most expected orders follow from.
 struct OrderModel {
     double smoothing = 2;    ///< error ~ h^smoothing where sums are as good as integrals
-    double noise_power;      ///< `power` above
+    double noise_power = 0;  ///< `power` above
     bool transition = false; ///< on irregular particles the smoothing error still shows on affordable ladders
-    double truncated;        ///< order at fixed h/dx at a free edge or corner
+    double truncated = 0;    ///< order at fixed h/dx at a free edge or corner
     bool lattice_floor =
         false; ///< not smooth at r = 0: a lattice sum at h/dx = 2 already shows its quadrature error
     std::string_view source; ///< derivation or citation
@@ -78,6 +78,9 @@ struct OperatorClaims {
     bool symmetric = false;          ///< sum V B O A = sum V A O B
     bool nonpositive = false;        ///< sum V A O A <= 0
     bool dissipates = false;         ///< sum V u . O u <= 0, and O u = 0 for rigid motion
+    /// Artificial viscosity: where all pairs approach, O u = alpha h c/(2(dim+2)) (div grad u + 2 grad div
+    /// u), c = 1 m/s (the sum of Monaghan & Cleary); 0: none.
+    double alpha = 0;
     bool sees_checkerboard =
         true; ///< Laplacians: a field of alternating sign on the lattice is not in the null space
     bool vanishes_on_lattices = false; ///< O = 0 where every neighbour has its mirror image
@@ -92,7 +95,8 @@ struct Operator {
     Approximates approximates;
     OperatorClaims claims;
     OrderModel order;
-    int sweeps = 1; ///< passes over all pairs (two where a first pass prepares the second)
+    int sweeps = 1;       ///< passes over all pairs, those that prepare others included
+    bool chained = false; ///< set by with_formula: other particles' results are read, two supports away
     void (*apply2)(const OperatorInput<2>&, std::span<double* const> result) = nullptr;
     void (*apply3)(const OperatorInput<3>&, std::span<double* const> result) = nullptr;
 
@@ -162,6 +166,7 @@ void apply(const OperatorInput<Dim>& input, std::span<double* const> result) {
 ///   template <int Dim> static void apply(const OperatorInput<Dim>&, std::span<double* const> result).
 template <class Formula>
 Operator with_formula(Operator declaration) {
+    declaration.chained = detail::AppliesItself<Formula, 2>;
     declaration.apply2 = detail::apply<Formula, 2>;
     declaration.apply3 = detail::apply<Formula, 3>;
     return declaration;

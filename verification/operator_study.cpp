@@ -153,7 +153,7 @@ void judge_study(OperatorStudy& study, const std::vector<Rung>& rungs) {
     const double undetermined =
         std::accumulate(study.samples.begin(), study.samples.end(), 0.0,
                         [](double sum, const OperatorSample& sample) { return sum + sample.undetermined; });
-    if (undetermined > 0 && study.ladder.arrangement != Arrangement::random) {
+    if (undetermined > 0) {
         study.verdict = "FAIL";
         study.reason = "the neighbours of some particles do not determine the operator";
         return;
@@ -167,6 +167,16 @@ void judge_study(OperatorStudy& study, const std::vector<Rung>& rungs) {
     study.verdict = to_string(judgement.verdict);
     study.reason = judgement.reason;
     study.fit = judgement.fit;
+}
+
+/// In three dimensions a filled box that resolves a wave as the two-dimensional ladders do would take
+/// millions of particles, so a block of it is judged. What is judged keeps two supports from an end:
+/// operators of two sweeps read their neighbours' results.
+template <int Dim>
+ParticleSet<Dim> particles_of(const OperatorLadder& ladder, int n, double support, std::uint64_t seed) {
+    const bool block = Dim == 3 && is_random(ladder.arrangement) && ladder.path != Path::fixed_h;
+    return block ? particle_block<Dim>(ladder.arrangement, n, 2 * support, seed)
+                 : particle_set<Dim>(ladder.arrangement, n, 2 * support, seed);
 }
 
 template <int Dim>
@@ -197,9 +207,9 @@ std::vector<OperatorStudy> run_ladder(std::span<const Operator* const> operators
         std::vector<std::vector<Judged>> judged(operators.size());
         double pairs = 0;
         for (int seed = 1; seed <= ladder.seeds; ++seed) {
-            OperatorScene<Dim> scene(particle_set<Dim>(ladder.arrangement, n, kernel.support * h,
-                                                       static_cast<std::uint64_t>(seed)),
-                                     kernel, h);
+            OperatorScene<Dim> scene(
+                particles_of<Dim>(ladder, n, kernel.support * h, static_cast<std::uint64_t>(seed)), kernel,
+                h);
             const PlaneWave<Dim> wave(scene.set.box);
             wave.fill(scene);
             if (ladder.path == Path::fixed_h) {
@@ -224,9 +234,11 @@ std::vector<OperatorStudy> run_ladder(std::span<const Operator* const> operators
     const double h = smoothing_length(ladder, ladder.n.front());
     for (std::size_t o = 0; o < operators.size(); ++o) {
         judge_study(studies[o], rungs[o]);
-        // Smoothing takes a share of (kh)^2/2 times the kernel's variance (below h^2) from a wave: twice
-        // that, where two operators follow each other. Whoever is farther off converges to something else.
-        if (ladder.path == Path::fixed_h && !(std::abs(factor[o] - 1) <= k_squared * h * h)) {
+        // A Gaussian of variance h^2, more than a kernel's, leaves exp(-(kh)^2/2) of a wave, and the square
+        // of that where two operators follow each other. Whoever is farther off, or adds to the wave by more
+        // than a lattice sum is off at the h/dx of limit_factor, converges to something else.
+        if (ladder.path == Path::fixed_h &&
+            !(factor[o] >= std::exp(-k_squared * h * h) && factor[o] <= 1.01)) {
             studies[o].verdict = "FAIL";
             studies[o].reason =
                 "the limit at this h is " + number(factor[o], "%.4g") + " times the exact result";
@@ -262,16 +274,36 @@ std::optional<Expected> expected_order(const Operator& op, const OperatorLadder&
     const double d = ladder.dimension;
     const double irregular = 1 - model.noise_power;
     const std::string source(model.source);
+    // Rings and settled tiles are quieter than a jitter, by how much no theory says: at least its order.
+    const bool quiet = ladder.arrangement == Arrangement::settled || ladder.arrangement == Arrangement::polar;
+    const auto at_least = [](double low, const std::string& why) {
+        return Expected{low - half_width, std::nullopt, why};
+    };
     if (ladder.path == Path::fixed_h) {
         const double order = ladder.arrangement == Arrangement::random ? d / 2 : 1 + d / 2;
-        return around(order, order, "quadrature noise at fixed h: " + source);
+        const std::string why = "quadrature noise at fixed h: " + source;
+        return quiet ? at_least(order, why) : around(order, order, why);
+    }
+    const double smoothing = joint_power * model.smoothing;
+    if (ladder.path == Path::joint && is_truncated(ladder.arrangement)) {
+        return around(joint_power * model.truncated, joint_power * model.truncated,
+                      "truncated support, h ~ sqrt(dx): " + source);
+    }
+    if (ladder.path == Path::joint && is_lattice(ladder.arrangement)) {
+        const double order = without_field ? 0 : smoothing;
+        return model.lattice_floor || without_field
+                   ? at_least(order,
+                              "smoothing error, and the lattice sum's, which h/dx makes smaller: " + source)
+                   : around(order, order, "smoothing error on a lattice: " + source);
     }
     if (ladder.path == Path::joint) {
-        const double noise = 1 + d / 2 - joint_power * (model.noise_power + d / 2);
-        const double smoothing = joint_power * model.smoothing;
+        const double noise = ladder.arrangement == Arrangement::random
+                                 ? d / 2 * (1 - joint_power) + joint_power * irregular
+                                 : 1 + d / 2 - joint_power * (model.noise_power + d / 2);
         const double low = without_field ? noise : std::min(noise, smoothing);
         const double high = model.transition && !without_field ? std::max(noise, smoothing) : low;
-        return around(low, high, "the slower of noise and smoothing: " + source);
+        const std::string why = "the slower of noise and smoothing: " + source;
+        return quiet ? at_least(low, why) : around(low, high, why);
     }
     if (is_truncated(ladder.arrangement)) {
         return around(model.truncated, model.truncated, "truncated support: " + source);
@@ -282,14 +314,10 @@ std::optional<Expected> expected_order(const Operator& op, const OperatorLadder&
                       "even kernel on a symmetric support" + (model.lattice_floor ? "; " + source : ""));
     }
     if (ladder.arrangement == Arrangement::polar) {
-        // Rings are a lattice bent ever less, but for their common centre, whose share of the area falls as
-        // dx^2.
-        const double centre = irregular + 1;
-        return around(irregular, without_field ? centre : std::max(centre, model.smoothing),
-                      "between the defect at the centre and the smoothing error: " + source);
+        // Sums along a ring do not feel its phase, but for rounding: the noise law is a bound, no more.
+        return at_least(irregular, "no worse than noise: " + source);
     }
-    const bool weak = ladder.arrangement == Arrangement::settled || model.transition;
-    const double high = weak && !without_field ? model.smoothing : irregular;
+    const double high = model.transition && !without_field ? model.smoothing : irregular;
     return around(irregular, std::max(irregular, high), source);
 }
 
@@ -297,13 +325,14 @@ std::vector<OperatorLadder> operator_ladders(std::string_view tier) {
     const std::vector<int> regular{16, 20, 28, 40, 56, 80};
     const std::vector<int> disordered{40, 56, 80, 112, 160};
     const std::vector<int> truncated{160, 226, 320, 453, 640};
+    const std::vector<int> settled{80, 120, 160, 240, 320}; // whole tiles
     std::vector<OperatorLadder> ladders{
         {2, Arrangement::square, Path::fixed_ratio, regular, 2, 1},
         {2, Arrangement::hexagonal, Path::fixed_ratio, regular, 2, 1},
         {2, Arrangement::jittered_5, Path::fixed_ratio, {80, 112, 160, 224, 320}, 1.3, seeds_of_random},
         {2, Arrangement::jittered_10, Path::fixed_ratio, disordered, 1.3, seeds_of_random},
         {2, Arrangement::jittered_20, Path::fixed_ratio, disordered, 1.3, seeds_of_random},
-        {2, Arrangement::settled, Path::fixed_ratio, {40, 60, 80, 120, 160}, 1.3, seeds_of_random},
+        {2, Arrangement::settled, Path::fixed_ratio, settled, 1.3, seeds_of_random},
         {2, Arrangement::polar, Path::fixed_ratio, disordered, 1.3, seeds_of_random},
         {2, Arrangement::random, Path::fixed_ratio, disordered, 2, seeds_of_random},
         {2, Arrangement::edge, Path::fixed_ratio, truncated, 1.3, 1},
@@ -319,24 +348,45 @@ std::vector<OperatorLadder> operator_ladders(std::string_view tier) {
             ladder.n = {40, 80, 160, 240, 320};
         }
     }
-    ladders.push_back({2, Arrangement::random, Path::fixed_h, {30, 40, 60, 80, 120}, 2, seeds_of_random});
+    // The other pairs of arrangement and path. There is no h fixed where the limit would be another: the
+    // factor in front of the exact result is measured on a lattice, and an edge's limit is no multiple of it.
+    for (const Arrangement arrangement : {Arrangement::jittered_5, Arrangement::jittered_10,
+                                          Arrangement::random, Arrangement::settled, Arrangement::polar}) {
+        const bool tiles = arrangement == Arrangement::settled;
+        const std::vector<int> n =
+            tiles ? std::vector{20, 40, 60, 80, 120} : std::vector{30, 40, 60, 80, 120};
+        ladders.push_back({2, arrangement, Path::fixed_h, n, tiles ? 1.2 : 1.5, seeds_of_random});
+    }
+    for (const Arrangement arrangement : all_arrangements()) {
+        if (arrangement != Arrangement::jittered_20) {
+            const bool tiles = arrangement == Arrangement::settled;
+            ladders.push_back({2, arrangement, Path::joint,
+                               tiles                       ? std::vector{40, 60, 80, 120, 160}
+                               : is_truncated(arrangement) ? truncated
+                                                           : disordered,
+                               is_lattice(arrangement) ? 2 : 1.3,
+                               is_random(arrangement) ? seeds_of_random : 1});
+        }
+    }
     const std::vector<int> regular3{14, 20, 28, 40, 56};
-    const std::vector<int> disordered3{16, 23, 32, 45, 64};
     for (const Arrangement arrangement : {Arrangement::square, Arrangement::hexagonal}) {
         ladders.push_back({3, arrangement, Path::fixed_ratio, regular3, 1.5, 1});
     }
+    ladders.push_back(
+        {3, Arrangement::jittered_5, Path::fixed_ratio, {80, 113, 160, 226, 320}, 1.3, seeds_of_random});
+    const std::vector<int> disordered3{40, 57, 80, 113, 160};
     for (const Arrangement arrangement :
-         {Arrangement::jittered_5, Arrangement::jittered_10, Arrangement::jittered_20, Arrangement::polar,
-          Arrangement::random}) {
+         {Arrangement::jittered_10, Arrangement::jittered_20, Arrangement::random}) {
         ladders.push_back({3, arrangement, Path::fixed_ratio, disordered3, 1.3, seeds_of_random});
     }
+    ladders.push_back({3, Arrangement::settled, Path::fixed_ratio, settled, 1.3, seeds_of_random});
     ladders.push_back(
-        {3, Arrangement::settled, Path::fixed_ratio, {10, 20, 30, 40, 60}, 1.3, seeds_of_random});
+        {3, Arrangement::polar, Path::fixed_ratio, {28, 40, 57, 80, 113}, 1.3, seeds_of_random});
     for (const Arrangement arrangement : {Arrangement::edge, Arrangement::corner}) {
         ladders.push_back({3, arrangement, Path::fixed_ratio, truncated, 1.3, 1});
     }
     ladders.push_back(
-        {3, Arrangement::jittered_20, Path::fixed_h, {10, 14, 20, 28, 40}, 1.3, seeds_of_random});
+        {3, Arrangement::jittered_20, Path::fixed_h, {7, 10, 14, 20, 28}, 0.9, seeds_of_random});
     ladders.push_back({3, Arrangement::jittered_20, Path::joint, disordered3, 1.3, seeds_of_random});
     return ladders;
 }

@@ -71,14 +71,15 @@ struct PropertyCheck {
 /// The order that an operator's declaration gives for a ladder: with s = 1/2, m the noise power, d the
 /// dimension,
 ///
-///   h/dx fixed:  the smoothing order on lattices; 1 - m on irregular particles (both bound the order where
-///   the
-///                disorder is weak or a transition is declared); `truncated` at an edge or corner
+///   h/dx fixed:  the smoothing order on lattices; 1 - m on irregular particles, up to the smoothing order
+///   where a
+///                transition is declared; `truncated` at an edge or corner
 ///   h fixed:     1 + d/2 for displaced lattices, d/2 for independent positions (Monte Carlo)
-///   joint:       the smaller of 1 + d/2 - s(m + d/2) and s `smoothing`
+///   joint:       the smaller of s `smoothing` and 1 + d/2 - s(m + d/2), or, for independent positions,
+///                (1 - s) d/2 + s(1 - m); s `truncated` at an edge or corner
 ///
-/// with ± 0.25: theory's own steps are d/2, half an order in three dimensions. Nothing for operators without
-/// a continuous limit.
+/// with ± 0.25: theory's own steps are d/2, half an order in three dimensions. On rings, and off h/dx fixed
+/// on settled tiles, these are lower bounds. Nothing for operators without a continuous limit.
 std::optional<Expected> expected_order(const solver::Operator& op, const OperatorLadder& ladder);
 
 /// The ladders of a tier: "quick" (two dimensions), "nightly" (finer, and three dimensions).

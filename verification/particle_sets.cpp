@@ -27,6 +27,12 @@ solver::Box<Dim> unit_box(bool periodic) {
     return box;
 }
 
+/// Where sine and cosine of a wave sin(2 pi sum_d x_d + 0.3) are equal: no term of an error happens to
+/// vanish.
+template <int Dim>
+constexpr std::array<double, 3> slope_equals_value =
+    Dim == 2 ? std::array{0.4, 0.6773, 0.} : std::array{0.3, 0.4, 0.3773};
+
 /// Coordinates into the box: a shift or a jitter may have taken them out.
 template <int Dim>
 void wrap(ParticleSet<Dim>& set) {
@@ -154,19 +160,23 @@ ParticleSet<Dim> settled(int n, std::uint64_t seed) {
 }
 
 /// Rings of radius 0, dx, 2 dx, … about the middle of the box; in three dimensions repeated in layers of dx
-/// along the last direction, which is periodic.
+/// along the last direction: n of them, periodic, or, for a `slice`, as many that three are `margin` from
+/// both ends.
 template <int Dim>
-ParticleSet<Dim> polar(int n, double margin, std::uint64_t seed) {
+ParticleSet<Dim> polar(int n, double margin, bool slice, std::uint64_t seed) {
     constexpr double pi = std::numbers::pi;
+    constexpr int judged_layers = 3;
     const double dx = 1.0 / n;
     ParticleSet<Dim> set{unit_box<Dim>(false), {}, {}, {}, dx};
-    const int layers = Dim == 3 ? n : 1;
+    const int beyond = slice ? static_cast<int>(std::ceil(margin / dx)) : 0;
+    const int layers = Dim == 2 ? 1 : slice ? judged_layers + 2 * beyond : n;
     if constexpr (Dim == 3) {
-        set.box.periodic[2] = true;
+        set.box.periodic[2] = !slice;
     }
     std::mt19937_64 generator(seed);
     const int rings = n / 2; // the last ring ends half a spacing inside the box
     for (int layer = 0; layer < layers; ++layer) {
+        const bool deep = layer >= beyond && layer < layers - beyond;
         for (int ring = 0; ring < rings; ++ring) {
             const int along = ring == 0 ? 1 : static_cast<int>(std::lround(2 * pi * ring));
             const double area = ring == 0 ? pi / 4 : 2 * pi * ring; // over dx^2
@@ -176,9 +186,9 @@ ParticleSet<Dim> polar(int n, double margin, std::uint64_t seed) {
                 set.points[0].push_back(0.5 + ring * dx * std::cos(angle));
                 set.points[1].push_back(0.5 + ring * dx * std::sin(angle));
                 if constexpr (Dim == 3) {
-                    set.points[2].push_back((layer + 0.5) * dx);
+                    set.points[2].push_back(0.5 + (layer + 0.5 - 0.5 * layers) * dx);
                 }
-                if ((rings - 0.5 - ring) * dx > margin) {
+                if (deep && (rings - 0.5 - ring) * dx > margin) {
                     set.judged.push_back(set.size());
                 }
                 set.volume.push_back(area / along * std::pow(dx, Dim));
@@ -203,12 +213,9 @@ ParticleSet<Dim> random(int n, std::uint64_t seed) {
 /// in the middle of one side, which lies at the same place of the box for every n.
 template <int Dim>
 ParticleSet<Dim> truncated(int n, bool corner) {
-    constexpr int depth = 12;
+    constexpr int depth = 16; // two supports at h/dx = 2.6
     constexpr int width = 2 * depth + 1;
-    // Where sine and cosine of a wave sin(2 pi sum_d x_d + 0.3) are equal: no term of an error happens to
-    // vanish.
-    constexpr std::array<double, 3> place =
-        Dim == 2 ? std::array{0.4, 0.6773, 0.} : std::array{0.3, 0.4, 0.3773};
+    constexpr std::array<double, 3> place = slope_equals_value<Dim>;
     ParticleSet<Dim> set{unit_box<Dim>(false), {}, {}, {}, 1.0 / n};
     if (place[0] + depth * set.dx > 1 || place[1] + depth * set.dx > 1) {
         throw std::invalid_argument("a truncated block of " + std::to_string(n) +
@@ -281,7 +288,7 @@ ParticleSet<Dim> particle_set(Arrangement arrangement, int n, double margin, std
     case Arrangement::settled:
         return settled<Dim>(n, seed);
     case Arrangement::polar:
-        return polar<Dim>(n, margin, seed);
+        return polar<Dim>(n, margin, false, seed);
     case Arrangement::random:
         return random<Dim>(n, seed);
     case Arrangement::edge:
@@ -292,6 +299,46 @@ ParticleSet<Dim> particle_set(Arrangement arrangement, int n, double margin, std
     throw std::invalid_argument("no such arrangement");
 }
 
+template <int Dim>
+ParticleSet<Dim> particle_block(Arrangement arrangement, int n, double margin, std::uint64_t seed) {
+    if (arrangement == Arrangement::polar) {
+        return polar<Dim>(n, margin, true, seed);
+    }
+    if (is_truncated(arrangement) || arrangement == Arrangement::hexagonal) {
+        throw std::invalid_argument("a block of a " + std::string(to_string(arrangement)) + " arrangement");
+    }
+    constexpr int judged_across = 8;
+    const double dx = 1.0 / n;
+    int across = judged_across + 2 * static_cast<int>(std::ceil(margin / dx));
+    if (arrangement == Arrangement::settled) {
+        across = settled_tile<Dim> * ((across + settled_tile<Dim> - 1) / settled_tile<Dim>);
+    }
+    if (across > n) {
+        throw std::invalid_argument("a block of " + std::to_string(across) +
+                                    " spacings leaves its box; accepted: " + std::to_string(across) +
+                                    " and more along the box");
+    }
+    ParticleSet<Dim> set = particle_set<Dim>(arrangement, across, margin, seed);
+    std::vector<char> inside(set.size(), 1);
+    for (int d = 0; d < Dim; ++d) {
+        const double centre = slope_equals_value<Dim>[d];
+        set.box.low[d] = centre - 0.5;
+        set.box.high[d] = centre + 0.5;
+        set.box.periodic[d] = false;
+        for (int i = 0; i < set.size(); ++i) {
+            const double from_centre = (set.points[d][i] - 0.5) * across * dx;
+            set.points[d][i] = centre + from_centre;
+            inside[i] = inside[i] && std::abs(from_centre) < 0.5 * across * dx - margin;
+        }
+    }
+    std::erase_if(set.judged, [&](int i) { return !inside[i]; });
+    set.volume.assign(set.size(), std::pow(dx, Dim));
+    set.dx = dx;
+    return set;
+}
+
+template ParticleSet<2> particle_block<2>(Arrangement, int, double, std::uint64_t);
+template ParticleSet<3> particle_block<3>(Arrangement, int, double, std::uint64_t);
 template ParticleSet<2> particle_set<2>(Arrangement, int, double, std::uint64_t);
 template ParticleSet<3> particle_set<3>(Arrangement, int, double, std::uint64_t);
 

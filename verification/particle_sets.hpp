@@ -52,6 +52,14 @@ struct ParticleSet {
 template <int Dim>
 ParticleSet<Dim> particle_set(Arrangement arrangement, int n, double margin, std::uint64_t seed);
 
+/// A part of such an arrangement whose size does not grow with n as that of the box does: for rings, as many
+/// layers as leave three `margin` (m) away from both ends; for a square lattice, jittered, settled and random
+/// sets a cube, in an open box of side 1, with 8^dim judged spacings that keep the margin from its surface,
+/// where a wave sin(2 pi sum_d x_d + 0.3) has equal sine and cosine. Throws std::invalid_argument for other
+/// arrangements, and where the cube leaves the box.
+template <int Dim>
+ParticleSet<Dim> particle_block(Arrangement arrangement, int n, double margin, std::uint64_t seed);
+
 /// Particles along a side of the tile that a settled arrangement repeats.
 template <int Dim>
 constexpr int settled_tile = Dim == 2 ? 20 : 10;

@@ -14,13 +14,6 @@ std::string order_text(double order) {
     return std::isnan(order) ? dash : number(order, "%.2f");
 }
 
-std::string band(const Expected& expected) {
-    if (expected.low && expected.high) {
-        return number(*expected.low, "%g") + "…" + number(*expected.high, "%g");
-    }
-    return expected.low ? "≥ " + number(*expected.low, "%g") : "≤ " + number(*expected.high, "%g");
-}
-
 std::string study_table(const FieldStudy& study) {
     MarkdownTable table({"n", "h", "dx", "N", "Δt", "steps", "L1", "order", "L2", "order", "L∞", "order",
                          "seconds", "pair evaluations"});
@@ -79,6 +72,13 @@ std::string front_table(const std::vector<Front>& fronts) {
 }
 
 } // namespace
+
+std::string band(const Expected& expected) {
+    if (expected.low && expected.high) {
+        return number(*expected.low, "%g") + "…" + number(*expected.high, "%g");
+    }
+    return expected.low ? "≥ " + number(*expected.low, "%g") : "≤ " + number(*expected.high, "%g");
+}
 
 std::string verdict_line(const FieldStudy& study) {
     std::string line;

@@ -10,6 +10,9 @@ namespace sphvv::verification {
 /// error-against- cost table, the claims and the waivers. This is what `sphvv verify` prints.
 std::string markdown(const LadderResult& result);
 
+/// An expected order: "0.9…2", "≥ 0.9" or "≤ 0.5".
+std::string band(const Expected& expected);
+
 /// "order 1.10 ± 0.27 (expected 0.9...2, SOURCE) PASS" without the leading word "fit: ".
 std::string verdict_line(const FieldStudy& study);
 

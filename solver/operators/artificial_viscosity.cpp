@@ -44,8 +44,9 @@ const Operator& artificial_viscosity() {
             "-rho_i sum_j m_j Pi_ij gradW_ij, Pi_ij = -alpha h c/rho_ij u_ij.r_ij/(r_ij^2 + 0.01 h^2) if < 0",
         .source = "Monaghan 1992; Oger et al. 2007; Xu 2009 App. A",
         .approximates = Approximates::nothing,
-        .claims = {.conserves_momentum = true, .dissipates = true},
-        .order = {.noise_power = 2, .truncated = -1, .source = "switched pair by pair: no continuous limit"},
+        .claims = {.conserves_momentum = true, .dissipates = true, .alpha = 1},
+        .order = {.source = "switched pair by pair: a limit only where all pairs approach, that of the "
+                            "Monaghan-Cleary sum (Espanol & Revenga 2003)"},
     });
     return op;
 }

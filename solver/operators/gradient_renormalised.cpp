@@ -31,6 +31,7 @@ const Operator& gradient_renormalised() {
                   .truncated = 1,
                   .source = "exact for linears, so second moments off by O(p) h are left (verification rules "
                             "§4; Quinlan, Basa & Lastiwka 2006)"},
+        .sweeps = 2,
     });
     return op;
 }

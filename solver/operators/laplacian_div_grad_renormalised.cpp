@@ -33,7 +33,7 @@ const Operator& laplacian_div_grad_renormalised() {
                   .truncated = 0,
                   .source = "the noise O(h) p of the renormalised gradient is differentiated once more "
                             "(verification rules §4; Quinlan, Basa & Lastiwka 2006)"},
-        .sweeps = 2,
+        .sweeps = 4,
     });
     return op;
 }

@@ -12,9 +12,7 @@ struct Formula {
         if (!L) {
             return undetermined<double>();
         }
-        std::array<const double*, Dim> scalar;
-        scalar.fill(in.field[0]);
-        return laplacian_schwaiger<Dim>(row, i, scalar, in.volume(), *L)[0];
+        return laplacian_schwaiger_scalar<Dim>(row, i, in.field[0], in.volume(), *L);
     }
 };
 
@@ -33,6 +31,7 @@ const Operator& laplacian_schwaiger() {
                   .truncated = 0,
                   .source = "exact for linears, second moments off by O(p) (verification rules §4; Quinlan, "
                             "Basa & Lastiwka 2006)"},
+        .sweeps = 4,
     });
     return op;
 }

@@ -17,6 +17,15 @@ Vector<Dim> laplacian_schwaiger(const Row<Dim>& row, int i, const std::array<con
     return L.trace() / Dim * (laplacian_morris<Dim>(row, i, u, volume, 0.0) - 2 * gradient * S);
 }
 
+/// The same of a scalar.
+template <int Dim, class Volume>
+double laplacian_schwaiger_scalar(const Row<Dim>& row, int i, const double* A, const Volume& volume,
+                                  const Matrix<Dim>& L) {
+    const Vector<Dim> S = gradient_of_unity<Dim>(row, volume);
+    const Vector<Dim> gradient = L * gradient_difference<Dim>(row, i, A, volume);
+    return L.trace() / Dim * (laplacian_morris_scalar<Dim>(row, i, A, volume, 0.0) - 2 * gradient.dot(S));
+}
+
 /// The same operator as a matrix: weights with -Laplacian A_i = sum_j w_ij (A_i - A_j),
 /// w_ij = (tr L_i/dim) V_j [-2 F_ij - 2 (L_i gradW_ij).S_i]. Not symmetric. Returns sum_j w_ij.
 template <int Dim, class Volume>

@@ -33,7 +33,8 @@ Matrix<Dim> first_moments(const Row<Dim>& row, const Volume& volume) {
 
 /// L_i = M_i^-1, which makes a difference gradient exact for linear fields. Source: Xu 2009 §2.1.2; Oger
 /// 2007. Nothing where the neighbours do not span the space, or only just: det M below 1e-6 (tr M/dim)^dim,
-/// whatever the size of M, so that cond L stays below 1e6 (2-D; 1e7 in 3-D).
+/// whatever the size of M, so that cond L stays below 4e6 in 2-D and in 3-D (largest eigenvalue 1, smallest
+/// x: x > 1e-6 (1 + x)^2/4; with a third one y, the worst is y = 1/2: x > 1e-6/4).
 template <int Dim, class Volume>
 std::optional<Matrix<Dim>> determined_renormalisation(const Row<Dim>& row, const Volume& volume) {
     const Matrix<Dim> M = first_moments<Dim>(row, volume);

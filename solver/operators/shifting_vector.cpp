@@ -22,7 +22,7 @@ const Operator& shifting_vector() {
         .source = "Xu 2009 §2.3; power and factor in 3-D: shifting_vector.hpp",
         .approximates = Approximates::nothing,
         .claims = {.vanishes_on_lattices = true},
-        .order = {.noise_power = 0, .truncated = 0, .source = "no continuous limit"},
+        .order = {.source = "of an arrangement, not of a field"},
     });
     return op;
 }

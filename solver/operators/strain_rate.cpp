@@ -32,6 +32,7 @@ const Operator& strain_rate() {
                   .truncated = 1,
                   .source =
                       "as the renormalised gradient (verification rules §4; Quinlan, Basa & Lastiwka 2006)"},
+        .sweeps = 2,
     });
     return op;
 }

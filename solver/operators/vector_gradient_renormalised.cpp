@@ -31,6 +31,7 @@ const Operator& vector_gradient_renormalised() {
                   .truncated = 1,
                   .source =
                       "as the renormalised gradient (verification rules §4; Quinlan, Basa & Lastiwka 2006)"},
+        .sweeps = 2,
     });
     return op;
 }

@@ -6,6 +6,7 @@
 #include "sphvv/solver/operators/laplacian_morris.hpp"
 #include "sphvv/solver/operators/laplacian_schwaiger.hpp"
 #include "sphvv/solver/operators/momentum_weakly_compressible.hpp"
+#include "sphvv/solver/operators/moving_least_squares.hpp"
 #include "sphvv/solver/operators/renormalisation.hpp"
 #include "sphvv/solver/operators/shifting_vector.hpp"
 #include "sphvv/solver/tests/scenes.hpp"
@@ -810,6 +811,38 @@ TEST(TruncatedSupport, DivergenceOfPositionHasThePublishedValues) {
         const double divergence =
             divergence_difference<2>(sheet.list.row(i), i, pointers<2>(sheet.points), sheet.volume);
         EXPECT_NEAR(divergence, (std::array{1.216, 1.742, 1.987}[row]), last_digit(3));
+    }
+}
+
+// Every coefficient of the fit is the derivative that its place stands for, those of the third degree
+// included, which neither gradient nor Laplacian reads.
+TEST(MovingLeastSquares, CoefficientsOfACubicAreItsDerivatives) {
+    const Sample<2> sample(12, 0.2, 5, false, 1, 1.6);
+    const double x0 = 0.4;
+    const double y0 = 0.6;
+    const auto A = values<2>(sample, [&](const Vector<2>& r) {
+        const double x = r[0] - x0;
+        const double y = r[1] - y0;
+        return 0.3 + 2 * x - 3 * y + 5 * x * x / 2 + 7 * x * y - 11 * y * y / 2 + 13 * x * x * x / 6 +
+               17 * x * x * y / 2 - 19 * x * y * y / 2 + 23 * y * y * y / 6;
+    });
+    for (int i = 0; i < sample.count(); i += 7) {
+        const double x = sample.points[0][i] - x0;
+        const double y = sample.points[1][i] - y0;
+        const std::array expected{2 + 5 * x + 7 * y + 13 * x * x / 2 + 17 * x * y - 19 * y * y / 2,
+                                  -3 + 7 * x - 11 * y + 17 * x * x / 2 - 19 * x * y + 23 * y * y / 2,
+                                  5 + 13 * x + 17 * y,
+                                  7 + 17 * x - 19 * y,
+                                  -11 - 19 * x + 23 * y,
+                                  13.,
+                                  17.,
+                                  -19.,
+                                  23.};
+        const auto found = taylor_coefficients<2, 3>(sample.list.row(i), i, A.data(), sample.h);
+        ASSERT_TRUE(found.has_value());
+        for (int m = 0; m < 9; ++m) {
+            EXPECT_NEAR((*found)[m], expected[m], 1e-7) << i << ", derivative " << m;
+        }
     }
 }
 

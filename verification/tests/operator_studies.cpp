@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <tuple>
 
@@ -35,13 +36,14 @@ const solver::Kernel& quintic() {
 struct Band {
     double low, high;
 };
+constexpr double none = std::numeric_limits<double>::infinity(); // a lower bound only
 
 Band band_of(std::string_view name, int dimension, Arrangement arrangement, Path path) {
     const auto expected = expected_order(find(name), {dimension, arrangement, path, {16, 64}, 1.3, 1});
     EXPECT_TRUE(expected.has_value()) << name;
     EXPECT_FALSE(expected->source.empty());
     // what theory gives, without the quarter on either side
-    return {*expected->low + 0.25, *expected->high - 0.25};
+    return {*expected->low + 0.25, expected->high ? *expected->high - 0.25 : none};
 }
 
 struct OrderByHand {
@@ -63,8 +65,8 @@ const std::array orders_by_hand{
     OrderByHand{"gradient_plain", A::jittered_5, ratio, {-1, -1}, {-1, -1}},
     OrderByHand{"gradient_plain", A::jittered_20, ratio, {-1, -1}, {-1, -1}},
     OrderByHand{"gradient_plain", A::random, ratio, {-1, -1}, {-1, -1}},
-    OrderByHand{"gradient_plain", A::settled, ratio, {-1, 2}, {-1, 2}},
-    OrderByHand{"gradient_plain", A::polar, ratio, {-1, 2}, {-1, 2}},
+    OrderByHand{"gradient_plain", A::settled, ratio, {-1, -1}, {-1, -1}},
+    OrderByHand{"gradient_plain", A::polar, ratio, {-1, none}, {-1, none}},
     OrderByHand{"gradient_plain", A::edge, ratio, {-1, -1}, {-1, -1}},
     OrderByHand{"gradient_plain", A::corner, ratio, {-1, -1}, {-1, -1}},
     OrderByHand{"gradient_plain", A::jittered_20, Path::fixed_h, {2, 2}, {2.5, 2.5}},
@@ -75,14 +77,14 @@ const std::array orders_by_hand{
     OrderByHand{"gradient_difference", A::jittered_5, ratio, {0, 0}, {0, 0}},
     OrderByHand{"gradient_difference", A::jittered_20, ratio, {0, 0}, {0, 0}},
     OrderByHand{"gradient_difference", A::random, ratio, {0, 0}, {0, 0}},
-    OrderByHand{"gradient_difference", A::settled, ratio, {0, 2}, {0, 2}},
+    OrderByHand{"gradient_difference", A::settled, ratio, {0, 0}, {0, 0}},
     OrderByHand{"gradient_difference", A::edge, ratio, {0, 0}, {0, 0}},
     OrderByHand{"gradient_difference", A::jittered_20, Path::fixed_h, {2, 2}, {2.5, 2.5}},
     OrderByHand{"gradient_difference", A::jittered_20, Path::joint, {1, 1}, {1, 1}},
 
     OrderByHand{"gradient_renormalised", A::hexagonal, ratio, {2, 2}, {2, 2}},
     OrderByHand{"gradient_renormalised", A::jittered_10, ratio, {1, 2}, {1, 2}},
-    OrderByHand{"gradient_renormalised", A::polar, ratio, {1, 2}, {1, 2}},
+    OrderByHand{"gradient_renormalised", A::polar, ratio, {1, none}, {1, none}},
     OrderByHand{"gradient_renormalised", A::corner, ratio, {1, 1}, {1, 1}},
     OrderByHand{"gradient_renormalised", A::jittered_20, Path::fixed_h, {2, 2}, {2.5, 2.5}},
     OrderByHand{"gradient_renormalised", A::jittered_20, Path::joint, {1, 1.5}, {1, 1.75}},
@@ -99,10 +101,16 @@ const std::array orders_by_hand{
     OrderByHand{"summation_density", A::square, ratio, {0, 0}, {0, 0}},
     OrderByHand{"summation_density", A::jittered_20, ratio, {0, 0}, {0, 0}},
     OrderByHand{"summation_density", A::settled, ratio, {0, 0}, {0, 0}},
-    OrderByHand{"summation_density", A::polar, ratio, {0, 1}, {0, 1}},
+    OrderByHand{"summation_density", A::polar, ratio, {0, none}, {0, none}},
     OrderByHand{"summation_density", A::corner, ratio, {0, 0}, {0, 0}},
     OrderByHand{"summation_density", A::jittered_20, Path::fixed_h, {2, 2}, {2.5, 2.5}},
     OrderByHand{"summation_density", A::random, Path::fixed_h, {1, 1}, {1.5, 1.5}},
+    // Independent positions: Monte Carlo, (dx/h)^(d/2) h^(1-m), with h ~ sqrt(dx).
+    OrderByHand{"summation_density", A::random, Path::joint, {0.5, 0.5}, {0.75, 0.75}},
+    OrderByHand{"gradient_plain", A::random, Path::joint, {0, 0}, {0.25, 0.25}},
+    OrderByHand{"gradient_plain", A::square, Path::joint, {1, 1}, {1, 1}},
+    OrderByHand{"gradient_plain", A::corner, Path::joint, {-0.5, -0.5}, {-0.5, -0.5}},
+    OrderByHand{"gradient_plain", A::settled, Path::joint, {0.5, none}, {0.75, none}},
     OrderByHand{"summation_density", A::jittered_20, Path::joint, {1, 1}, {1.25, 1.25}},
 
     OrderByHand{"laplacian_morris", A::jittered_10, ratio, {-1, -1}, {-1, -1}},
@@ -130,7 +138,7 @@ TEST(ExpectedOrders, FollowForEveryOperatorWithALimitAndForNoOther) {
             for (const Operator* op : solver::operators::all()) {
                 const auto expected = expected_order(*op, ladder);
                 EXPECT_EQ(expected.has_value(), op->approximates != Approximates::nothing) << op->name;
-                if (expected) {
+                if (expected && expected->high) {
                     EXPECT_LT(*expected->low, *expected->high) << op->name;
                 }
             }
@@ -140,18 +148,34 @@ TEST(ExpectedOrders, FollowForEveryOperatorWithALimitAndForNoOther) {
 
 TEST(OperatorLadders, CanBringAVerdict) {
     for (const char* tier : {"quick", "nightly"}) {
-        std::set<Arrangement> arrangements;
+        std::set<std::pair<Arrangement, Path>> two;
+        std::set<Arrangement> three;
         std::set<Path> paths;
         for (const OperatorLadder& ladder : operator_ladders(tier)) {
-            arrangements.insert(ladder.arrangement);
             paths.insert(ladder.path);
             EXPECT_GE(ladder.n.size(), 5U);
             EXPECT_GE(ladder.n.back(), 4 * ladder.n.front());
             EXPECT_TRUE(std::ranges::is_sorted(ladder.n));
             EXPECT_EQ(ladder.seeds, is_random(ladder.arrangement) ? 5 : 1);
+            if (ladder.dimension == 2) {
+                EXPECT_TRUE(two.emplace(ladder.arrangement, ladder.path).second) << "twice";
+            } else {
+                three.insert(ladder.arrangement);
+            }
         }
-        EXPECT_EQ(arrangements.size(), all_arrangements().size());
         EXPECT_EQ(paths.size(), 3U);
+        const bool nightly = tier == std::string_view("nightly");
+        EXPECT_EQ(three.size(), nightly ? all_arrangements().size() : 0U);
+        for (const Arrangement arrangement : all_arrangements()) {
+            EXPECT_TRUE(two.contains({arrangement, Path::fixed_ratio}));
+            if (nightly) {
+                SCOPED_TRACE(to_string(arrangement));
+                EXPECT_TRUE(two.contains({arrangement, Path::joint}));
+                // at fixed h the limit of a lattice is measured on one, and an edge's is no multiple of the
+                // exact result
+                EXPECT_EQ(two.contains({arrangement, Path::fixed_h}), is_random(arrangement));
+            }
+        }
     }
 }
 
@@ -641,10 +665,8 @@ TEST(UndeterminedRows, AreCountedAndLeaveTheNormsNumbers) {
                 EXPECT_GT(norm, 0);
             }
         }
-        // Only independent positions leave particles alone.
-        EXPECT_EQ(study.reason == "the neighbours of some particles do not determine the operator",
-                  arrangement == A::square);
-        EXPECT_EQ(study.verdict == "FAIL", arrangement == A::square) << study.reason;
+        EXPECT_EQ(study.reason, "the neighbours of some particles do not determine the operator");
+        EXPECT_EQ(study.verdict, "FAIL");
     }
 }
 

@@ -113,6 +113,64 @@ TYPED_TEST(ParticleSets, LatticesAreTheirOwnMirrorImage) {
     }
 }
 
+// Two supports from the surface: the supports of the judged ones are full, and so are those of their
+// neighbours.
+TYPED_TEST(ParticleSets, ABlockIsJudgedWhereSupportsAreThoseOfTheWholeArrangement) {
+    constexpr int dim = TypeParam::value;
+    constexpr int spacings = 64;
+    const double margin = 2 * 3 * 1.3 / spacings;
+    for (const Arrangement arrangement : {Arrangement::square, Arrangement::jittered_20, Arrangement::settled,
+                                          Arrangement::random, Arrangement::polar}) {
+        SCOPED_TRACE(to_string(arrangement));
+        if (dim == 2 && arrangement == Arrangement::polar) {
+            continue; // a set of rings is its own slice
+        }
+        const OperatorScene<dim> scene = scene_of<dim>(particle_block<dim>(arrangement, spacings, margin, 1));
+        const ParticleSet<dim>& set = scene.set;
+        EXPECT_DOUBLE_EQ(set.dx, 1.0 / spacings);
+        const bool rings = arrangement == Arrangement::polar;
+        const double expected = rings ? 3 * std::numbers::pi * 23.5 * 23.5 : this->power(8);
+        if (arrangement == Arrangement::square) {
+            EXPECT_EQ(set.judged.size(), static_cast<std::size_t>(this->power(8)));
+        } else if (arrangement != Arrangement::settled) { // whose blocks are whole tiles
+            EXPECT_NEAR(static_cast<double>(set.judged.size()), expected,
+                        rings ? 0.02 * expected : 0.5 * expected);
+        }
+        std::vector<char> reached(set.size(), 0);
+        double sum = 0;
+        for (const int i : set.judged) {
+            const auto row = scene.neighbours.row(i);
+            reached[i] = 1;
+            for (int k = 0; k < row.count; ++k) {
+                reached[row.index[k]] = 1;
+            }
+            for (int d = 0; d < dim; ++d) {
+                sum += set.points[d][i] / static_cast<double>(set.judged.size());
+            }
+        }
+        if (!rings) {
+            EXPECT_NEAR(std::sin(2 * std::numbers::pi * sum + 0.3),
+                        std::cos(2 * std::numbers::pi * sum + 0.3), 0.05);
+        }
+        // A shell of the support's width lies outside of everything that is read at first hand.
+        for (int d = 0; d < dim; ++d) {
+            const auto [low, high] = std::minmax_element(set.points[d].begin(), set.points[d].end());
+            for (int i = 0; i < set.size(); ++i) {
+                if (reached[i]) {
+                    EXPECT_GT(set.points[d][i] - *low, margin / 2 - 1.3 * set.dx);
+                    EXPECT_GT(*high - set.points[d][i], margin / 2 - 1.3 * set.dx);
+                }
+            }
+            EXPECT_DOUBLE_EQ(set.box.length(d), 1);
+            EXPECT_GE(*low, set.box.low[d]);
+            EXPECT_LE(*high, set.box.high[d]);
+        }
+    }
+    EXPECT_THROW(particle_block<dim>(Arrangement::edge, spacings, margin, 1), std::invalid_argument);
+    EXPECT_THROW(particle_block<dim>(Arrangement::hexagonal, spacings, margin, 1), std::invalid_argument);
+    EXPECT_THROW(particle_block<dim>(Arrangement::jittered_20, 20, 7.8 / 20, 1), std::invalid_argument);
+}
+
 // Nearest neighbours of the triangular and of the face-centred cubic lattice; six and twelve of them.
 TYPED_TEST(ParticleSets, TheHexagonalLatticeIsTheClosestPacking) {
     constexpr int dim = TypeParam::value;
