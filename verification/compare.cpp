@@ -18,10 +18,14 @@ constexpr double round_off_of_schemes = 1e-2;
 constexpr double work_tolerance = 0.01;
 constexpr double least_order_change = 0.05;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* none = "none"; // stands for a member that is null or not there; not the verdict NONE
 
 constexpr std::array error_names{"l1", "l2", "linf"};
 constexpr std::array work_names{"steps", "pair_evaluations", "solver_iterations", "matrix_entries",
                                 "undetermined"};
+/// What a check demands: loosening one of these turns a wrong answer into a right one.
+constexpr std::array demand_names{"bound", "at_least", "expected", "tolerance", "reference", "is_bound"};
+
 /// Lists of checks, the members that identify one, and the one that says whether it is as it must be.
 struct CheckList {
     const char* name;
@@ -42,7 +46,11 @@ const std::vector<const char*> operator_identity{"operator", "dimension", "arran
 const std::vector<const char*> scheme_identity{"scheme", "group", "field", "tier"};
 
 std::string text_of(const ResultTree& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump();
+    return value.is_string() ? value.get<std::string>() : value.is_null() ? none : value.dump();
+}
+
+std::string text_of(double value, const char* format) {
+    return std::isnan(value) ? none : number(value, format);
 }
 
 const ResultTree& member(const ResultTree& tree, const char* name) {
@@ -82,7 +90,20 @@ std::string verdict_of(const ResultTree& study) {
 /// The expected band as text.
 std::string band_of(const ResultTree& study) {
     const ResultTree& expected = member(study, "expected");
-    return member(expected, "low").dump() + "…" + member(expected, "high").dump();
+    const std::string low = text_of(member(expected, "low"));
+    const std::string high = text_of(member(expected, "high"));
+    return low == none && high == none ? none : low + "…" + high;
+}
+
+/// Whether a check is as it must be.
+std::string outcome_of(const ResultTree& check, const char* passes) {
+    if (member(check, passes).is_null()) {
+        return none;
+    }
+    const ResultTree& waiver = member(check, "waiver");
+    const bool waived = waiver.is_string() && !waiver.get<std::string>().empty();
+    return std::string(member(check, passes) == true ? "holds" : "does not hold") +
+           (waived ? " (waived)" : "");
 }
 
 /// Everything that is compared, by identity.
@@ -205,28 +226,34 @@ private:
         result_.differences.push_back({change, subject, where, what, before, after, factor});
     }
 
-    /// One number; `otherwise` is the change if it is more than `tolerance`.
+    /// Counts one comparison and says whether it is done. What neither side has is no evidence of equality,
+    /// so it is not counted; what one side lacks differs.
+    bool settled(bool nothing, bool equal) {
+        result_.compared += nothing ? 0 : 1;
+        result_.bitwise += equal && !nothing ? 1 : 0;
+        return nothing || equal;
+    }
+    bool settled(double before, double after) {
+        return settled(std::isnan(before) && std::isnan(after), before == after);
+    }
+
+    /// One number; `otherwise` is the change if it is more than `tolerance`, or if one side has none.
     void compare_number(const Contents::Study& study, long n, const char* name, double before, double after,
                         double tolerance, Change otherwise) {
-        ++result_.compared;
-        if (before == after || (std::isnan(before) && std::isnan(after))) {
-            ++result_.bitwise;
+        if (settled(before, after)) {
             return;
         }
         const double factor = after / before;
         const bool close = std::abs(after - before) <= tolerance * std::abs(before);
         note(close ? Change::round_off : otherwise, study.subject, study.where + ", n = " + std::to_string(n),
-             name, number(before, "%.4g"), number(after, "%.4g"), factor);
+             name, text_of(before, "%.4g"), text_of(after, "%.4g"), factor);
     }
 
     void compare_word(Change change, const std::string& subject, const std::string& where,
                       const std::string& what, const std::string& before, const std::string& after) {
-        ++result_.compared;
-        if (before == after) {
-            ++result_.bitwise;
-            return;
+        if (!settled(before == none && after == none, before == after)) {
+            note(change, subject, where, what, before, after);
         }
-        note(change, subject, where, what, before, after);
     }
 
     void compare_study(const Contents::Study& before, const Contents::Study& after) {
@@ -268,16 +295,14 @@ private:
         const ResultTree& fit_after = member(*after.tree, "fit");
         const double order_before = number_of(fit_before, "order");
         const double order_after = number_of(fit_after, "order");
-        ++result_.compared;
-        if (order_before == order_after || (std::isnan(order_before) && std::isnan(order_after))) {
-            ++result_.bitwise;
+        if (settled(order_before, order_after)) {
             return;
         }
         const double allowed =
             std::max(least_order_change, number_of(fit_before, "ci95") + number_of(fit_after, "ci95"));
         const bool close = std::abs(order_after - order_before) <= allowed; // not if one is missing
         note(close ? Change::round_off : Change::order, before.subject, before.where, "order",
-             number(order_before, "%.3f"), number(order_after, "%.3f"));
+             text_of(order_before, "%.3f"), text_of(order_after, "%.3f"));
     }
 
     void compare_seconds(const Contents::Study& study, long n, double before, double after) {
@@ -289,22 +314,36 @@ private:
         }
     }
 
+    /// A demand that is gone is weaker than any. One that the baseline does not keep yet is reported under
+    /// its list, one row for all, and fails nothing. Some are computed, so they are equal to round-off only.
+    void compare_demand(const Contents::Check& before, const Contents::Check& after, const char* name) {
+        const ResultTree& old_demand = member(*before.tree, name);
+        const ResultTree& demand = member(*after.tree, name);
+        if (old_demand.is_null() && !demand.is_null()) {
+            const std::string where = before.subject + (before.where.empty() ? "" : ", ") + before.where;
+            note(Change::added, before.list->name, where, name, none, text_of(demand));
+            return;
+        }
+        if (settled(demand.is_null() && old_demand.is_null(), demand == old_demand)) {
+            return;
+        }
+        const double x = number_of(*before.tree, name);
+        const double y = number_of(*after.tree, name);
+        const bool close = std::abs(y - x) <= round_off_of_operators * std::abs(x);
+        note(close ? Change::round_off : Change::demand, before.subject, before.where, name,
+             text_of(old_demand), text_of(demand), old_demand.is_number() ? y / x : 1);
+    }
+
     void compare_check(const Contents::Check& before, const Contents::Check& after) {
-        const auto word = [](const Contents::Check& check) {
-            const bool waived =
-                !text_of(member(*check.tree, "waiver")).empty() && member(*check.tree, "waiver").is_string();
-            return std::string(member(*check.tree, check.list->passes) == true ? "holds" : "does not hold") +
-                   (waived ? " (waived)" : "");
-        };
-        compare_word(Change::verdict, before.subject, before.where, before.list->passes, word(before),
-                     word(after));
-        compare_word(Change::demand, before.subject, before.where, "bound",
-                     member(*before.tree, "bound").dump(), member(*after.tree, "bound").dump());
+        compare_word(Change::verdict, before.subject, before.where, before.list->passes,
+                     outcome_of(*before.tree, before.list->passes),
+                     outcome_of(*after.tree, before.list->passes));
+        for (const char* name : demand_names) {
+            compare_demand(before, after, name);
+        }
         const double value_before = number_of(*before.tree, "value");
         const double value_after = number_of(*after.tree, "value");
-        ++result_.compared;
-        if (value_before == value_after || (std::isnan(value_before) && std::isnan(value_after))) {
-            ++result_.bitwise;
+        if (settled(value_before, value_after)) {
             return;
         }
         // Round-off has no digits to compare; it is held to its bound by the check itself.
@@ -318,8 +357,8 @@ private:
         const bool within_tolerance =
             std::abs(value_after - value_before) <= number_of(*before.tree, "tolerance");
         note(both_round_off || tiny || close || within_tolerance ? Change::round_off : Change::error_level,
-             before.subject, before.where, "value", number(value_before, "%.6g"), number(value_after, "%.6g"),
-             value_after / value_before);
+             before.subject, before.where, "value", text_of(value_before, "%.6g"),
+             text_of(value_after, "%.6g"), value_after / value_before);
     }
 
     Comparison result_;
@@ -426,7 +465,7 @@ std::string markdown(const Comparison& comparison) {
             }
             const Difference& d = *group.worst;
             table.add({std::string(to_string(d.change)), d.subject, d.where, d.what, d.baseline, d.current,
-                       number(d.factor, "%.6g"), std::to_string(group.count)});
+                       text_of(d.factor, "%.6g"), std::to_string(group.count)});
         }
         text += table.text();
         if (groups.size() > most_rows) {
@@ -456,7 +495,8 @@ ResultTree reduced_for_baseline(const ResultTree& result) {
     for (const CheckList& list : check_lists()) {
         baseline[list.name] = ResultTree::array();
         std::vector<const char*> kept = list.identity;
-        kept.insert(kept.end(), {"value", "bound", "tolerance", "waiver", list.passes});
+        kept.insert(kept.end(), demand_names.begin(), demand_names.end());
+        kept.insert(kept.end(), {"value", "waiver", list.passes});
         for (const ResultTree& check : member(result, list.name)) {
             refuse_unless_holding(check, list);
             baseline[list.name].push_back(picked(check, kept));

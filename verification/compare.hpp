@@ -12,11 +12,11 @@ enum class Change {
     bitwise_equal,
     round_off,   ///< within what another compiler or other flags change
     run_time,    ///< seconds; informational
-    added,       ///< not in the baseline; informational
+    added,       ///< not in the baseline, which may be older than the member; informational
     work,        ///< pair evaluations, iterations, matrix entries or steps; fails from 1 % on
-    error_level, ///< an error norm, up or down: an improvement asks for a new baseline, too
+    error_level, ///< an error norm, up, down or gone: an improvement asks for a new baseline, too
     order,       ///< by more than both 95 % intervals, or 0.05 where that is more
-    demand,      ///< what theory is said to expect, or a property's bound: a check made weaker or stronger
+    demand,      ///< an expected order, bound, tolerance or reference: a check made weaker or stronger
     verdict,     ///< PASS, FAIL, …; or a property, kernel check or published figure that holds or does not
     missing,     ///< in the baseline only
 };
@@ -35,7 +35,7 @@ struct Difference {
 
 struct Comparison {
     std::vector<Difference> differences; ///< without the bitwise equal ones
-    std::size_t compared = 0;            ///< numbers and words held against each other
+    std::size_t compared = 0;            ///< numbers and words held against each other; not what neither has
     std::size_t bitwise = 0;             ///< of those, the bitwise equal ones; seconds and costs take no part
 
     bool fails() const;

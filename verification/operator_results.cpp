@@ -325,7 +325,10 @@ void add_to_document(const OperatorResults& results, Tree& document) {
                                                  {"published", figure.published},
                                                  {"source", figure.source},
                                                  {"ours", figure.ours},
+                                                 {"reference", finite_or_null(figure.reference)},
                                                  {"value", finite_or_null(figure.value)},
+                                                 {"tolerance", finite_or_null(figure.tolerance)},
+                                                 {"is_bound", figure.is_bound},
                                                  {"agrees", figure.agrees},
                                                  {"waiver", figure.waiver}});
     }

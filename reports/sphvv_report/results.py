@@ -58,7 +58,7 @@ OPERATOR_FRONT = {"approximates": "text", "cost": "text", "curves": [OPERATOR_CU
 KERNEL_CHECK = {"kernel": "text", "dimension": "number", "check": "text", "value": "number", "expected": "number",
                 "tolerance": "number", "passes": "flag", "why": "text"}
 PUBLISHED_FIGURE = {"id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "value": "number",
-                    "agrees": "flag", "waiver": "text"}
+                    "reference?": "number", "tolerance?": "number", "is_bound?": "flag", "agrees": "flag", "waiver": "text"}
 CONSISTENCY_SUM = {"jitter": "number", "h_over_dx": "number", "neighbours": "number", "worst_zeroth": "number",
                    "worst_first": "number"}
 SEEDED_FAULT = {"name": "text", "file": "text", "summary": "text", "caught": "flag", "caught_by": "text", "seconds": "number"}

@@ -201,6 +201,15 @@ class Refusing(InFolder):
         refuse(lambda tree: tree.update(operator_costs=[{"operator": 7}]), "operator_costs[0].operator is not a text")
         refuse(lambda tree: tree.update(seeded_faults=[dict(tree["seeded_faults"][0], caught="yes")]), "seeded_faults[0].caught is not a boolean")
 
+    def test_the_demand_of_a_published_figure_may_be_missing(self):
+        tree = synthetic.workbench()  # as older files have it
+        tree["published_figures"][0].update(reference=57.0, tolerance=0.02, is_bound=False)
+        results.check_result(tree)
+        self.assertEqual([tree["published_figures"][k]["reference"] for k in (0, 1)], [57.0, None])
+        tree["published_figures"][0].update(tolerance="2 %")
+        with self.assertRaisesRegex(ValueError, r"^published_figures\[0\]\.tolerance is not a number$"):
+            results.check_result(tree)
+
     def test_json_that_is_no_result(self):
         self.assert_refused(self.file("cut.json", b'{"format": "sphvv-results", "cases": ['), "damaged")
         self.assert_refused(self.file("other.json", b'{"format": "geojson"}'), "not a result file of sphvv")

@@ -37,9 +37,10 @@ ResultTree operator_study(const std::string& name, const std::string& arrangemen
             {"samples", samples}};
 }
 
-/// A result of two operators on two arrangements, a scheme, a property and a figure.
+/// A result of two operators on two arrangements, a scheme, a property, a kernel check and figures.
 ResultTree result() {
-    ResultTree tree{{"format", "sphvv-results"}, {"provenance", {{"revision", "abc"}, {"cpu", "x"}}}};
+    ResultTree tree{{"format", "sphvv-results"},
+                    {"provenance", {{"revision", "abc"}, {"tree_clean", true}, {"cpu", "x"}}}};
     tree["operator_studies"] = {operator_study("gradient", "square"), operator_study("gradient", "random"),
                                 operator_study("laplacian", "square")};
     ResultTree scheme = operator_study("", "");
@@ -56,9 +57,23 @@ ResultTree result() {
                                     {"property", "exact for linears"},
                                     {"value", 1e-15},
                                     {"bound", 1e-10},
+                                    {"at_least", false},
                                     {"passes", true}}};
+    tree["kernel_checks"] = {{{"kernel", "quintic_spline"},
+                              {"dimension", 2},
+                              {"check", "unit integral"},
+                              {"value", 1.0},
+                              {"expected", 1.0},
+                              {"tolerance", 1e-12},
+                              {"passes", true}}};
     tree["published_figures"] = {
-        {{"id", "XU-LAP"}, {"value", 66.5}, {"agrees", true}, {"waiver", ""}},
+        {{"id", "XU-LAP"},
+         {"reference", 66.5},
+         {"value", 66.5},
+         {"tolerance", 0.02},
+         {"is_bound", false},
+         {"agrees", true},
+         {"waiver", ""}},
         {{"id", "XU-ODD"}, {"value", 4000.}, {"agrees", false}, {"waiver", "a misprint"}}};
     return tree;
 }
@@ -160,8 +175,60 @@ TEST(Compare, AWeakerDemandIsSeen) {
     const auto wider = after([](ResultTree& t) { t["operator_studies"][0]["expected"]["low"] = -2.0; });
     EXPECT_EQ(count(wider, Change::demand), 1);
     EXPECT_TRUE(wider.fails());
-    EXPECT_EQ(count(after([](ResultTree& t) { t["operator_properties"][0]["bound"] = 1.0; }), Change::demand),
-              1);
+    const auto demand = [](const char* list, const char* name, const ResultTree& value) {
+        const Comparison comparison = after([&](ResultTree& t) { t[list][0][name] = value; });
+        EXPECT_EQ(comparison.fails(), count(comparison, Change::demand) == 1) << list << ' ' << name;
+        return count(comparison, Change::demand);
+    };
+    EXPECT_EQ(demand("operator_properties", "bound", 1.0), 1);
+    EXPECT_EQ(demand("operator_properties", "at_least", true), 1);
+    EXPECT_EQ(demand("kernel_checks", "tolerance", 1e-3), 1);
+    EXPECT_EQ(demand("kernel_checks", "tolerance", nullptr), 1) << "infinite";
+    EXPECT_EQ(demand("kernel_checks", "expected", 1.1), 1);
+    EXPECT_EQ(demand("published_figures", "reference", 67.0), 1);
+    EXPECT_EQ(demand("published_figures", "tolerance", 0.5), 1);
+    EXPECT_EQ(demand("published_figures", "is_bound", true), 1);
+    EXPECT_EQ(demand("published_figures", "reference", 66.5 * (1 + 1e-12)), 0) << "computed elsewhere";
+}
+
+TEST(Compare, ADemandThatAnOldBaselineDoesNotKeepIsReportedAndDoesNotFail) {
+    ResultTree old = reduced_for_baseline(result());
+    old["kernel_checks"][0].erase("expected");
+    for (const char* name : {"reference", "tolerance", "is_bound"}) {
+        old["published_figures"][0].erase(name);
+    }
+    const Comparison comparison = compare(old, result());
+    EXPECT_EQ(count(comparison, Change::added), 4);
+    EXPECT_FALSE(comparison.fails());
+    const std::string table = markdown(comparison);
+    EXPECT_EQ(std::ranges::count(table, '\n'), 6) << "header, rule, one row a list, blank, counts\n" << table;
+    ResultTree loosened = result();
+    loosened["kernel_checks"][0]["tolerance"] = 1e-3; // which the old baseline keeps
+    EXPECT_TRUE(compare(old, loosened).fails());
+}
+
+TEST(Compare, WhatNeitherSideHasIsNotCounted) {
+    const ResultTree rung{{"n", 20}, {"l1", 0.1}, {"l2", nullptr}, {"pair_evaluations", 5}};
+    ResultTree tree = result();
+    tree.erase("studies");
+    tree.erase("operator_properties");
+    tree.erase("kernel_checks");
+    tree["published_figures"] = {{{"id", "XU-LAP"}, {"value", 66.5}, {"agrees", true}}};
+    tree["operator_studies"] = {operator_study("gradient", "square")};
+    tree["operator_studies"][0]["samples"] = {rung};
+    tree["operator_studies"][0].erase("expected");
+    const Comparison same = compare(tree, tree);
+    EXPECT_EQ(same.compared, 6) << "verdict, order, l1, pair_evaluations; agrees, value";
+    EXPECT_EQ(same.bitwise, same.compared);
+    // What only one side has is seen from either.
+    ResultTree more = tree;
+    more["operator_studies"][0]["samples"][0]["l2"] = 0.1;
+    for (const Comparison& comparison : {compare(tree, more), compare(more, tree)}) {
+        EXPECT_EQ(count(comparison, Change::error_level), 1);
+        EXPECT_EQ(comparison.compared, same.compared + 1);
+        EXPECT_NE(markdown(comparison).find(" none |"), std::string::npos) << markdown(comparison);
+        EXPECT_TRUE(comparison.fails());
+    }
 }
 
 TEST(Compare, WhatIsInformationalDoesNotFail) {
@@ -198,7 +265,8 @@ TEST(Compare, BitwiseEqualIsNotSaidOfWhatIsNotTheSame) {
 
 TEST(Compare, AKernelCheckIsNoBetterThanItsTolerance) {
     const auto estimated = [](double value, double tolerance) {
-        return ResultTree{{"kernel_checks",
+        return ResultTree{{"provenance", {{"tree_clean", true}}},
+                          {"kernel_checks",
                            {{{"kernel", "wendland_c6"},
                              {"dimension", 0},
                              {"check", "smoothness"},
@@ -239,7 +307,8 @@ TEST(Compare, TheTableStaysShort) {
 
 TEST(Compare, ResultsWithNothingInCommonAreRefused) {
     ResultTree other = result();
-    for (const char* list : {"operator_studies", "operator_properties", "published_figures"}) {
+    for (const char* list :
+         {"operator_studies", "operator_properties", "kernel_checks", "published_figures"}) {
         other[list] = ResultTree::array();
     }
     ResultTree operators = result();

@@ -3,6 +3,8 @@
 //   verification_published_operators --gtest_filter='*Print*'
 #include "sphvv/verification/published_operators.hpp"
 
+#include "sphvv/verification/operator_results.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,6 +67,21 @@ TEST(PublishedOperators, SayWhatTheyAre) {
         EXPECT_TRUE(std::isfinite(figure.value));
         EXPECT_TRUE(std::isfinite(figure.reference));
         EXPECT_GE(figure.tolerance, 0);
+    }
+}
+
+/// Without it in the result file, nobody sees that a figure was made to agree by a wider tolerance.
+TEST(PublishedOperators, WriteHowTheyAreJudged) {
+    OperatorResults results{};
+    results.figures = figures();
+    nlohmann::ordered_json document;
+    add_to_document(results, document);
+    ASSERT_EQ(document["published_figures"].size(), figures().size());
+    for (std::size_t k = 0; k < figures().size(); ++k) {
+        const auto& written = document["published_figures"][k];
+        EXPECT_EQ(written["reference"], figures()[k].reference);
+        EXPECT_EQ(written["tolerance"], figures()[k].tolerance);
+        EXPECT_EQ(written["is_bound"], figures()[k].is_bound);
     }
 }
 
