@@ -2,10 +2,12 @@
 
 #include "commands.hpp"
 #include "output.hpp"
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 namespace sphvv::cli {
 namespace {
@@ -63,23 +65,68 @@ int compare_files(const std::string& baseline, const std::string& current, const
     return comparison.fails() ? 1 : 0;
 }
 
-int bless(const std::string& current, const std::string& baseline, const Common& common) {
-    const ResultTree results = read_results(current);
+struct BlessOptions {
+    Common common;
+    std::string current;
+    std::string baseline;
+    bool allow_missing = false;
+    bool allow_dirty = false;
+};
+
+/// The baseline that is to be replaced, if there is one. Throws UserError for a result file: overwriting it
+/// would lose hours of runs to a slip of the hand.
+std::optional<ResultTree> old_baseline(const std::string& path) {
+    if (!std::filesystem::exists(path)) {
+        return {};
+    }
+    ResultTree tree = read_results(path);
+    if (tree.at("format") != "sphvv-baseline") {
+        throw UserError("--baseline '" + path +
+                        "' is a result file and not a baseline, so it is not overwritten");
+    }
+    return tree;
+}
+
+/// What the old baseline has and the new one would not check ever again; empty if there is nothing.
+std::string missing_entries(const Comparison& comparison) {
+    const auto missing = [](const verification::Difference& d) {
+        return d.change == verification::Change::missing;
+    };
+    const auto first = std::ranges::find_if(comparison.differences, missing);
+    return first == comparison.differences.end()
+               ? std::string()
+               : "the result lacks " +
+                     std::to_string(std::ranges::count_if(comparison.differences, missing)) +
+                     " entries of the old baseline, the first of them " + first->subject + " (" +
+                     first->where + "); --allow-missing drops them";
+}
+
+int refuse_to_bless(const std::string& why) {
+    std::cerr << "sphvv: " << why << '\n';
+    return 1;
+}
+
+int bless(const BlessOptions& options) {
+    const ResultTree results = read_results(options.current);
+    const std::optional<ResultTree> old = old_baseline(options.baseline);
     ResultTree reduced;
     try {
-        reduced = verification::reduced_for_baseline(results);
+        reduced = verification::reduced_for_baseline(results, options.allow_dirty);
     } catch (const UserError& error) {
-        std::cerr << "sphvv: " << error.what() << '\n';
-        return 1;
+        return refuse_to_bless(error.what());
     }
-    if (std::filesystem::exists(baseline)) {
-        const Comparison comparison = verification::compare(read_results(baseline), reduced);
+    if (old) {
+        const Comparison comparison = verification::compare(*old, reduced);
         std::cout << "against the old baseline:\n" << markdown(comparison);
-        if (!common.json.empty()) {
-            write_text(common.json, tree_of(comparison).dump(1) + "\n");
+        if (!options.common.json.empty()) {
+            write_text(options.common.json, tree_of(comparison).dump(1) + "\n");
+        }
+        const std::string missing = missing_entries(comparison);
+        if (!missing.empty() && !options.allow_missing) {
+            return refuse_to_bless(missing);
         }
     }
-    write_text(baseline, verification::baseline_text(reduced));
+    write_text(options.baseline, verification::baseline_text(reduced));
     return 0;
 }
 
@@ -99,34 +146,31 @@ void add_compare(CLI::App& app, Act& act) {
     add_common(*command, options->common);
     command->footer(
         "Example: sphvv operators --out now.h5; sphvv compare verification/baselines/operators.json now.h5\n"
-        "Exit status: 0 equal, or equal to round-off; 1 an error level, order, verdict or work count "
-        "changed, "
-        "or something is missing; 2 wrong use.");
+        "Exit status: 0 equal, or equal to round-off; 1 an error level, order, demand, verdict or work count "
+        "changed, or something is missing; 2 wrong use.");
     command->callback([options, &act] {
         act = [options] { return compare_files(options->baseline, options->current, options->common); };
     });
 }
 
 void add_bless(CLI::App& app, Act& act) {
-    struct Options {
-        Common common;
-        std::string baseline;
-        std::string current;
-    };
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<BlessOptions>();
     CLI::App* command = app.add_subcommand("bless", "makes a result the new baseline, if all of it passes");
     command->add_option("current", options->current, "result file")->required();
     command->add_option("--baseline", options->baseline, "baseline to write")
         ->required()
         ->type_name("FILE.json");
+    command->add_flag("--allow-missing", options->allow_missing,
+                      "drop what the old baseline has and the result has not");
+    command->add_flag("--allow-dirty", options->allow_dirty,
+                      "take a result whose source was not committed when it was built");
     add_common(*command, options->common);
     command->footer(
         "Example: sphvv bless now.h5 --baseline verification/baselines/operators.json\n"
-        "Prints what changed. Exit status: 0 written; 1 a verdict does not pass, nothing was written; 2 "
-        "wrong use.");
-    command->callback([options, &act] {
-        act = [options] { return bless(options->current, options->baseline, options->common); };
-    });
+        "Prints what changed. Exit status: 0 written; 1 nothing was written, since a verdict does "
+        "not pass, entries of the old baseline are missing or the source was not committed; 2 "
+        "wrong use, such as a result file in the place of the baseline.");
+    command->callback([options, &act] { act = [options] { return bless(*options); }; });
 }
 
 } // namespace sphvv::cli

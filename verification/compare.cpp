@@ -481,9 +481,14 @@ std::string markdown(const Comparison& comparison) {
     return text + (comparison.fails() ? "; FAIL\n" : "; PASS\n");
 }
 
-ResultTree reduced_for_baseline(const ResultTree& result) {
+ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty) {
+    if (!allow_dirty && member(member(result, "provenance"), "tree_clean") != true) {
+        throw UserError("no baseline is made of a result whose source was not committed when it was built, "
+                        "since no revision reproduces it; --allow-dirty does it all the same");
+    }
     ResultTree baseline{{"format", "sphvv-baseline"}, {"format_version", 1}};
-    baseline["provenance"] = picked(member(result, "provenance"), {"revision", "compiler", "flags", "cpu"});
+    baseline["provenance"] =
+        picked(member(result, "provenance"), {"revision", "tree_clean", "compiler", "flags", "cpu"});
     for (const auto& [list, identity] :
          {std::pair{"operator_studies", &operator_identity}, std::pair{"studies", &scheme_identity}}) {
         baseline[list] = ResultTree::array();

@@ -56,11 +56,13 @@ Comparison compare(const ResultTree& baseline, const ResultTree& current);
 /// most 40 lines, and a line of counts.
 std::string markdown(const Comparison& comparison);
 
-/// What a baseline keeps of a result: identities, error norms, orders, verdicts, work; no seconds, no texts.
-/// Throws UserError, naming the first one, if the result has a verdict that failed or is inconclusive without
-/// a waiver, a property, kernel check or figure that is not as it must be, or a run that ended early
-/// unexpectedly: a baseline that blesses a wrong answer is worse than none.
-ResultTree reduced_for_baseline(const ResultTree& result);
+/// What a baseline keeps of a result: identities, error norms, orders, demands, verdicts, work; no seconds,
+/// no texts. Throws UserError, naming the first one, if the result has a verdict that failed or is
+/// inconclusive without a waiver (a run that ended early unexpectedly is a FAIL of each of its studies), or a
+/// property, kernel check or figure that is not as it must be: a baseline that blesses a wrong answer is
+/// worse than none. So is one that nobody can reproduce: a result of a tree with uncommitted changes is
+/// refused unless `allow_dirty`.
+ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty = false);
 
 /// JSON with one line a rung or check, so that a reviewer can read the difference of two baselines.
 std::string baseline_text(const ResultTree& baseline);

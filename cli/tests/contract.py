@@ -171,10 +171,11 @@ class Contract(unittest.TestCase):
             self.assertEqual(result.returncode, 0, result.stderr)
             self.assertTrue(result.stdout.startswith("bitwise equal"), result.stdout)
         baseline = self.folder / "baseline.json"
-        self.assertEqual(sphvv("bless", str(out), "--baseline", str(baseline)).returncode, 0)
+        bless = ("--baseline", str(baseline), "--allow-dirty")  # this build may be of a tree that is being edited
+        self.assertEqual(sphvv("bless", str(out), *bless).returncode, 0)
         blessed = baseline.read_text()
         self.assertTrue(sphvv("compare", str(baseline), str(out)).stdout.startswith("bitwise equal"))
-        again = sphvv("bless", str(twin), "--baseline", str(baseline))  # either form makes the same baseline
+        again = sphvv("bless", str(twin), *bless)  # either form makes the same baseline
         self.assertIn("bitwise equal", again.stdout)
         self.assertEqual(baseline.read_text(), blessed)
 
@@ -187,12 +188,29 @@ class Contract(unittest.TestCase):
             self.assertEqual((difference["change"], difference["what"]), ("error level", "l2"))
             self.assertAlmostEqual(difference["factor"], factor)
 
-        failing = self.edited(twin, lambda study: study["fit"].update(verdict="FAIL"))
-        refused = sphvv("bless", str(failing), "--baseline", str(baseline))
-        self.assertEqual(refused.returncode, 1)
-        self.assertEqual(len(refused.stderr.strip().splitlines()), 1, refused.stderr)
-        self.assertIn("wcsph", refused.stderr)
-        self.assertEqual(baseline.read_text(), blessed)
+        def refuse(result, word, *flags):
+            refused = sphvv("bless", str(result), "--baseline", str(baseline), *flags)
+            self.assertEqual(refused.returncode, 1, refused.stderr)
+            self.assertEqual(len(refused.stderr.strip().splitlines()), 1, refused.stderr)
+            self.assertIn(word, refused.stderr)
+            self.assertEqual(baseline.read_text(), blessed)
+
+        refuse(self.edited(twin, lambda study: study["fit"].update(verdict="FAIL")), "wcsph", "--allow-dirty")
+        tree = json.loads(twin.read_text())
+        tree["provenance"]["tree_clean"] = False
+        dirty = self.folder / "dirty.json"
+        dirty.write_text(json.dumps(tree))
+        refuse(dirty, "--allow-dirty")
+        del tree["studies"][1]
+        shorter = self.folder / "shorter.json"
+        shorter.write_text(json.dumps(tree))
+        refuse(shorter, "--allow-missing", "--allow-dirty")
+        self.assertEqual(sphvv("bless", str(shorter), *bless, "--allow-missing").returncode, 0)
+        self.assertNotEqual(baseline.read_text(), blessed)
+        for result in (out, twin):  # a slip of the hand must not cost the runs
+            content = result.read_bytes()
+            self.assert_refused(sphvv("bless", str(twin), "--baseline", str(result), "--allow-dirty"), result.name)
+            self.assertEqual(result.read_bytes(), content)
 
     def test_compare_refuses_what_is_no_result(self):
         out, twin = self.small_result()
@@ -207,10 +225,10 @@ class Contract(unittest.TestCase):
             with self.subTest(name):
                 self.assert_refused(sphvv("compare", str(path), str(out)))
                 self.assert_refused(sphvv("compare", str(out), str(path)))
-                self.assert_refused(sphvv("bless", str(out), "--baseline", str(path)))  # not an old baseline
+                self.assert_refused(sphvv("bless", str(out), "--allow-dirty", "--baseline", str(path)))  # not an old baseline
                 self.assertEqual(path.read_bytes(), content)
         self.assert_refused(sphvv("compare", str(out), str(self.folder / "missing.h5")), "missing.h5")
-        self.assert_refused(sphvv("bless", str(out), "--baseline", str(self.folder / "nowhere" / "b.json")), "nowhere")
+        self.assert_refused(sphvv("bless", str(out), "--allow-dirty", "--baseline", str(self.folder / "nowhere" / "b.json")), "nowhere")
         operators = self.folder / "operators.json"  # of another command: nothing in common
         operators.write_text(json.dumps({
             "format": "sphvv-baseline", "format_version": 1,

@@ -345,9 +345,18 @@ TEST(Bless, RefusesWhatDoesNotPassAndNamesIt) {
               std::string::npos);
     EXPECT_NE(refusal([](ResultTree& t) { t["published_figures"][0]["agrees"] = false; }).find("XU-LAP"),
               std::string::npos);
+    EXPECT_NE(refusal([](ResultTree& t) { t["provenance"]["tree_clean"] = false; }).find("--allow-dirty"),
+              std::string::npos);
     // A disagreement that is known must stay one: if it agrees, its waiver has to go.
     EXPECT_NE(refusal([](ResultTree& t) { t["published_figures"][1]["agrees"] = true; }).find("XU-ODD"),
               std::string::npos);
+}
+
+TEST(Bless, KeepsWhetherTheTreeWasClean) {
+    EXPECT_EQ(reduced_for_baseline(result())["provenance"]["tree_clean"], true);
+    ResultTree dirty = result();
+    dirty["provenance"]["tree_clean"] = false;
+    EXPECT_EQ(reduced_for_baseline(dirty, true)["provenance"]["tree_clean"], false);
 }
 
 } // namespace
