@@ -298,6 +298,7 @@ private:
         size /= second ? scene.set.dx * scene.set.dx : scene.set.dx;
         const Columns found = scene.apply(op_);
         Missed missed;
+        int determined = 0;
         for (int i = 0; i < scene.set.size(); ++i) {
             const auto L =
                 solver::determined_renormalisation<Dim>(scene.neighbours.row(i), scene.input().volume());
@@ -305,6 +306,7 @@ private:
                 missed.undetermined += L ? 1 : 0;
                 continue;
             }
+            ++determined;
             const double condition = over_condition && L ? condition_of(*L) : 1;
             const std::vector<double> reference = exact<Dim>(op_.approximates, u, scene.point(i));
             for (std::size_t c = 0; c < found.size(); ++c) {
@@ -312,6 +314,7 @@ private:
                 missed.error = error <= missed.error ? missed.error : error; // keeps not-a-number
             }
         }
+        missed.error = determined > 0 ? missed.error : std::nan("");
         return missed;
     }
 
@@ -326,12 +329,13 @@ private:
         const std::array names{"constants", "linears", "quadratics", "cubics"};
         const bool inverts_L = degree == 1; // beyond, moment matrices of higher degree are inverted, too
         for (const Arrangement arrangement : all_arrangements()) {
-            const std::string where = std::string(to_string(arrangement)) + ", free sides";
+            const std::string where =
+                std::string(to_string(arrangement)) + ", free sides" + (inverts_L ? ", over cond L" : "");
             const double h_over_dx = arrangement == Arrangement::random ? 2.0 : 1.3;
             for (int p = 0; p <= degree; ++p) {
                 const Missed missed = polynomial_error(block(arrangement, h_over_dx), p, inverts_L);
-                record(std::string("exact for ") + names[p] + (inverts_L ? ", over cond L" : ""), where,
-                       missed.error, inverts_L ? round_off : tolerance());
+                record(std::string("exact for ") + names[p], where, missed.error,
+                       inverts_L ? round_off : tolerance());
                 if (p == degree) {
                     record("undetermined rows", where, missed.undetermined, 0);
                 }
@@ -627,7 +631,7 @@ private:
         }
         if (op_.claims.exact_degree == 1) {
             const Missed missed = polynomial_error(line(0.1), 1, true);
-            record("exact for linears, over cond L", "a line bent by 0.1 dx", missed.error, round_off);
+            record("exact for linears", "a line bent by 0.1 dx, over cond L", missed.error, round_off);
             if (!op_.chained) { // whose neighbours at the ends of the line have too few of their own
                 record("undetermined rows", "a line bent by 0.1 dx", missed.undetermined, 0);
             }

@@ -76,10 +76,12 @@ struct PropertyCheck {
 ///                transition is declared; `truncated` at an edge or corner
 ///   h fixed:     1 + d/2 for displaced lattices, d/2 for independent positions (Monte Carlo)
 ///   joint:       the smaller of s `smoothing` and 1 + d/2 - s(m + d/2), or, for independent positions,
-///                (1 - s) d/2 + s(1 - m); s `truncated` at an edge or corner
+///                (1 - s) d/2 + s(1 - m); the smoothing order on lattices
 ///
-/// with ± 0.25: theory's own steps are d/2, half an order in three dimensions. On rings, and off h/dx fixed
-/// on settled tiles, these are lower bounds. Nothing for operators without a continuous limit.
+/// with ± 0.25: theory's own steps are d/2, half an order in three dimensions. On rings it is a lower bound.
+/// Nothing for operators without a continuous limit, for rings and settled tiles off h/dx fixed, whose noise
+/// has no such law, and where the constant depends on an h/dx that changes (joint path at edges and of
+/// lattice sums without a field).
 std::optional<Expected> expected_order(const solver::Operator& op, const OperatorLadder& ladder);
 
 /// The ladders of a tier: "quick" (two dimensions), "nightly" (finer, and three dimensions).

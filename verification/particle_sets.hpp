@@ -54,7 +54,7 @@ ParticleSet<Dim> particle_set(Arrangement arrangement, int n, double margin, std
 
 /// A part of such an arrangement whose size does not grow with n as that of the box does: for rings, as many
 /// layers as leave three `margin` (m) away from both ends; for a square lattice, jittered, settled and random
-/// sets a cube, in an open box of side 1, with 8^dim judged spacings that keep the margin from its surface,
+/// sets a cube, in an open box of side 1, whose 8^2 or 12^3 judged spacings keep the margin from its surface,
 /// where a wave sin(2 pi sum_d x_d + 0.3) has equal sine and cosine. Throws std::invalid_argument for other
 /// arrangements, and where the cube leaves the box.
 template <int Dim>

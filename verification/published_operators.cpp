@@ -1046,11 +1046,13 @@ Figures consistency_decay(const Kernel& cubic) {
                 rungs.push_back({1 / row.h_over_dx, {row.*sum}});
             }
         }
+        const OrderFit fit = fit_order(rungs);
         figures.push_back(
             judged({"OGER consistency, " + std::string(name) + " sum",
                     "power of dx/h with which the extreme value of 500 points falls, jitter 0.2 dx",
                     "Oger et al. 2007, Figs. 1 and 2 (slow); verification rules §4"},
-                   "2 ± 0.25", 2, fit_order(rungs).order, 0.125, false));
+                   "2 within the slope's 95 % interval, ± " + number(fit.ci95, "%.2g"), 2, fit.order,
+                   fit.ci95 / 2, false));
     }
     return figures;
 }
