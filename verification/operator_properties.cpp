@@ -598,7 +598,7 @@ private:
         set.dx = 1.0 / spacings<Dim>;
         for (int i = 0; i < spacings<Dim>; ++i) {
             for (int d = 0; d < Dim; ++d) {
-                const bool up = (i >> (d - 1)) % 2 == 1; // y: 0101…, z: 0011…
+                const bool up = d > 0 && (i >> (d - 1)) % 2 == 1; // y: 0101…, z: 0011…
                 set.points[d].push_back(d == 0 ? (i + 0.5) * set.dx : 0.5 + (up ? displacement * set.dx : 0));
             }
             set.volume.push_back(std::pow(set.dx, Dim));
