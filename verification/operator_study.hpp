@@ -76,7 +76,8 @@ struct PropertyCheck {
 ///                transition is declared; `truncated` at an edge or corner
 ///   h fixed:     1 + d/2 for displaced lattices, d/2 for independent positions (Monte Carlo)
 ///   joint:       the smaller of s `smoothing` and 1 + d/2 - s(m + d/2), or, for independent positions,
-///                (1 - s) d/2 + s(1 - m); the smoothing order on lattices
+///                (1 - s) d/2 + s(1 - m); up to the larger one in three dimensions, whose ladders
+///                start where noise rules; the smoothing order on lattices
 ///
 /// with ± 0.25: theory's own steps are d/2, half an order in three dimensions. On rings it is a lower bound.
 /// Nothing for operators without a continuous limit, for rings and settled tiles off h/dx fixed, whose noise

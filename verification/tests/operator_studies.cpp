@@ -80,7 +80,7 @@ const std::array orders_by_hand{
     OrderByHand{"gradient_difference", A::settled, ratio, {0, 0}, {0, 0}},
     OrderByHand{"gradient_difference", A::edge, ratio, {0, 0}, {0, 0}},
     OrderByHand{"gradient_difference", A::jittered_20, Path::fixed_h, {2, 2}, {2.5, 2.5}},
-    OrderByHand{"gradient_difference", A::jittered_20, Path::joint, {1, 1}, {1, 1}},
+    OrderByHand{"gradient_difference", A::jittered_20, Path::joint, {1, 1}, {1, 1.25}},
 
     OrderByHand{"gradient_renormalised", A::hexagonal, ratio, {2, 2}, {2, 2}},
     OrderByHand{"gradient_renormalised", A::jittered_10, ratio, {1, 2}, {1, 2}},
@@ -95,7 +95,7 @@ const std::array orders_by_hand{
     OrderByHand{"gradient_mls_quadratic", A::random, ratio, {2, 2}, {2, 2}},
     OrderByHand{"gradient_mls_quadratic", A::edge, ratio, {2, 2}, {2, 2}},
     OrderByHand{"gradient_mls_quadratic", A::jittered_20, Path::fixed_h, {2, 2}, {2.5, 2.5}},
-    OrderByHand{"gradient_mls_quadratic", A::jittered_20, Path::joint, {1, 1}, {1, 1}},
+    OrderByHand{"gradient_mls_quadratic", A::jittered_20, Path::joint, {1, 1}, {1, 2.25}},
 
     // No field, so no smoothing error: on a lattice and on equal tiles every rung has the same sums.
     OrderByHand{"summation_density", A::square, ratio, {0, 0}, {0, 0}},
