@@ -83,7 +83,11 @@ class Operators(unittest.TestCase):
                                           "expected", "fit", "samples"})
             self.assertEqual(study["kernel"], "quintic_spline")
             self.assertEqual(study["tier"], "quick")
-            self.assertLess(study["expected"]["low"], study["expected"]["high"])
+            expected = study["expected"]
+            if study["arrangement"] == "polar" and study["path"] == "h/dx fixed":
+                self.assertIsNone(expected["high"]) # rings have a law for how bad it may get, none for how good
+            else:
+                self.assertLess(expected["low"], expected["high"])
             self.assertTrue(study["expected"]["source"])
             self.assertEqual(study["fit"]["verdict"], "PASS")
             self.assertEqual(set(study["fit"]), {"norm", "order", "ci95", "verdict", "reason", "order_l1", "order_l2",

@@ -63,7 +63,7 @@ TEST_P(EveryOperator, IsDeclaredInFull) {
     EXPECT_NE(op.apply2, nullptr);
     EXPECT_NE(op.apply3, nullptr);
     EXPECT_GE(op.sweeps, 1);
-    EXPECT_LE(op.sweeps, 3);
+    EXPECT_LE(op.sweeps, 4); // the most here: a composition of two operators, each behind a matrix of its own
     EXPECT_GE(op.claims.exact_degree, -1);
     EXPECT_LE(op.claims.exact_degree, 3);
     EXPECT_GT(op.order.smoothing, 0);
