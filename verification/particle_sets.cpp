@@ -307,7 +307,7 @@ ParticleSet<Dim> particle_block(Arrangement arrangement, int n, double margin, s
     if (is_truncated(arrangement) || arrangement == Arrangement::hexagonal) {
         throw std::invalid_argument("a block of a " + std::string(to_string(arrangement)) + " arrangement");
     }
-    constexpr int judged_across = Dim == 2 ? 8 : 12; // more than a support at h/dx = 2
+    constexpr int judged_across = Dim == 2 ? 8 : 12; // 64 or 1728 particles enter a norm
     const double dx = 1.0 / n;
     int across = judged_across + 2 * static_cast<int>(std::ceil(margin / dx));
     if (arrangement == Arrangement::settled) {

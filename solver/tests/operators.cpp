@@ -1,6 +1,6 @@
-// What each discrete operator owes besides its order: its formula, exactness, conservation, symmetry, and the
-// published errors at a truncated support.
-//   solver_operators --gtest_filter='*Truncated*'
+// What each discrete operator owes besides its order: its formula, exactness, conservation, symmetry. The
+// published errors at a truncated support are rows of `sphvv operators`.
+//   solver_operators --gtest_filter='*Morris*'
 #include "sphvv/solver/operators/divergence_difference.hpp"
 #include "sphvv/solver/operators/gradient_difference.hpp"
 #include "sphvv/solver/operators/laplacian_morris.hpp"
@@ -711,106 +711,6 @@ TEST(MorrisLaplacian, LosesThePublishedFractionByItsEta) {
     for (const Kernel* kernel : {&quintic, &wendland}) {
         EXPECT_NEAR(fraction_left<2>(*kernel, 1, 0, 20), 1, 2e-5);
         EXPECT_NEAR(fraction_left<3>(*kernel, 1, 0, 10), 1, 2e-5);
-    }
-}
-
-/// The 50 x 50 particles of Xu 2009 §6.2 on [2,3]^2, nodes on the edges, with nothing outside.
-struct TruncatedSupport {
-    static constexpr int n = 50;
-    static constexpr double dx = 1. / (n - 1);
-
-    TruncatedSupport() {
-        for (int along_y = 0; along_y < n; ++along_y) {
-            for (int along_x = 0; along_x < n; ++along_x) {
-                append<2>(points, {2 + along_x * dx, 2 + along_y * dx});
-            }
-        }
-        const Box<2> box{{1.9, 1.9}, {3.1, 3.1}, {false, false}};
-        list.build(box, kernels::find("quintic_spline"), h, 0, pointers<2>(points), n * n);
-    }
-
-    /// The particle that many rows in from x = 3, next to y = 2.5; or from y = 3, next to x = 2.5.
-    static int from_right(int row) { return n / 2 * n + n - 1 - row; }
-    static int from_top(int row) { return (n - 1 - row) * n + n / 2; }
-
-    std::vector<double> field(const std::function<double(double, double)>& function) const {
-        std::vector<double> result(points[0].size());
-        std::ranges::transform(points[0], points[1], result.begin(), function);
-        return result;
-    }
-
-    double h = 1.3 * dx;
-    UniformVolume volume{dx * dx};
-    Points<2> points;
-    NeighbourList<2> list;
-};
-
-/// Half a unit of the last digit of a number printed with that many decimals.
-constexpr double last_digit(int decimals) {
-    return decimals == 0 ? 0.5 : last_digit(decimals - 1) / 10;
-}
-
-TEST(TruncatedSupport, LaplaciansHaveThePublishedErrors) {
-    const TruncatedSupport sheet;
-    struct Published {
-        int m;
-        std::array<double, 3> schwaiger; ///< %, rows 0, 1, 2
-        std::array<double, 3> morris;    ///< %, eta = 0.1 h
-    };
-    for (const Published& published :
-         {Published{2, {66.5, 3.2, 0.01}, {5697, 1574, 68}}, Published{3, {70.5, 4.3, 0.06}, {3121, 862, 37}},
-          Published{4, {74.4, 5.5, 0.12}, {2260, 624, 27}}}) {
-        const int m = published.m;
-        std::array<std::vector<double>, 2> A;
-        A.fill(sheet.field([&](double x, double y) { return std::pow(x, m) + std::pow(y, m); }));
-        for (int row = 0; row < 3; ++row) {
-            SCOPED_TRACE("m = " + std::to_string(m) + ", row " + std::to_string(row));
-            const int i = TruncatedSupport::from_right(row);
-            const auto neighbours = sheet.list.row(i);
-            const double exact =
-                m * (m - 1) * (std::pow(sheet.points[0][i], m - 2) + std::pow(sheet.points[1][i], m - 2));
-            const auto error = [&](const Vector<2>& found) { return 100 * std::abs(found[0] / exact - 1); };
-            const Matrix<2> L = renormalisation<2>(neighbours, sheet.volume);
-            EXPECT_NEAR(error(laplacian_schwaiger<2>(neighbours, i, pointers<2>(A), sheet.volume, L)),
-                        published.schwaiger[row], last_digit(row == 2 ? 2 : 1));
-            const double eta = 0.1 * sheet.h;
-            EXPECT_NEAR(error(laplacian_morris<2>(neighbours, i, pointers<2>(A), sheet.volume, eta * eta)),
-                        published.morris[row], last_digit(0));
-        }
-    }
-}
-
-TEST(TruncatedSupport, RenormalisedGradientHasThePublishedErrors) {
-    const TruncatedSupport sheet;
-    const auto error = [&](const std::vector<double>& A, int m, int row) {
-        const int i = TruncatedSupport::from_top(row);
-        const auto neighbours = sheet.list.row(i);
-        const Vector<2> gradient = renormalisation<2>(neighbours, sheet.volume) *
-                                   gradient_difference<2>(neighbours, i, A.data(), sheet.volume);
-        return 100 * std::abs(gradient[1] / (m * std::pow(sheet.points[1][i], m - 1)) - 1);
-    };
-    const auto power = [&](int m) { return sheet.field([=](double, double y) { return std::pow(y, m); }); };
-    for (int row = 0; row < 3; ++row) {
-        SCOPED_TRACE(row);
-        EXPECT_LT(error(power(1), 1, row), 1e-10);
-        EXPECT_NEAR(error(power(2), 2, row), (std::array{0.50, 0.20, 0.014}[row]),
-                    last_digit(row == 2 ? 3 : 2));
-        EXPECT_NEAR(error(power(3), 3, row), (std::array{0.99, 0.39, 0.025}[row]),
-                    last_digit(row == 2 ? 3 : 2));
-        const auto both = sheet.field([](double x, double y) { return x * x + y * y; });
-        EXPECT_NEAR(error(both, 2, row), (std::array{0.72, 0.23, 0.015}[row]), last_digit(row == 2 ? 3 : 2));
-    }
-}
-
-// The un-normalised divergence of the position that marks a free surface, Xu sheet §1.10: 2 in a full
-// support.
-TEST(TruncatedSupport, DivergenceOfPositionHasThePublishedValues) {
-    const TruncatedSupport sheet;
-    for (int row = 0; row < 3; ++row) {
-        const int i = TruncatedSupport::from_right(row);
-        const double divergence =
-            divergence_difference<2>(sheet.list.row(i), i, pointers<2>(sheet.points), sheet.volume);
-        EXPECT_NEAR(divergence, (std::array{1.216, 1.742, 1.987}[row]), last_digit(3));
     }
 }
 
