@@ -354,11 +354,15 @@ std::string markdown(const OperatorResults& results, bool details) {
                         : std::to_string(passing) + " of " + std::to_string(all) + " " + what + "\n";
     };
     const auto passes = [](const auto& check) { return check.passes; };
-    text += count(std::ranges::count_if(results.studies,
-                                        [](const OperatorStudy& study) {
-                                            return study.verdict == "PASS" || study.verdict == "NONE";
-                                        }),
-                  results.studies.size(), "order ladders as theory has them");
+    const auto verdicts = [&](const char* verdict) {
+        return static_cast<std::size_t>(
+            std::ranges::count(results.studies, verdict, &OperatorStudy::verdict));
+    };
+    text += count(verdicts("PASS"), results.studies.size() - verdicts("NONE"),
+                  "order ladders as theory has them");
+    text += verdicts("NONE") == 0
+                ? ""
+                : std::to_string(verdicts("NONE")) + " ladders without a law: observed only\n";
     text += count(std::ranges::count_if(results.properties, passes), results.properties.size(),
                   "declared properties hold");
     text += count(std::ranges::count_if(results.kernel_checks, passes), results.kernel_checks.size(),
