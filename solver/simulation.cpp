@@ -160,6 +160,14 @@ void find_neighbours(Simulation<Dim>& simulation, double skin) {
 }
 
 template <int Dim>
+void renew_neighbours(Simulation<Dim>& simulation) {
+    wrap_positions(simulation);
+    const Particles<Dim>& particles = simulation.particles;
+    simulation.neighbours.build(simulation.box, *simulation.kernel, simulation.smoothing_length, 0,
+                                constant_arrays<Dim>(particles.position), static_cast<int>(particles.size()));
+}
+
+template <int Dim>
 double maximum_speed(const Simulation<Dim>& simulation) {
     const Field& u = simulation.particles.velocity;
     const int count = static_cast<int>(simulation.particles.size());
@@ -195,6 +203,7 @@ double kinetic_energy(const Simulation<Dim>& simulation) {
     template double even_step(const Simulation<Dim>&, double);                                               \
     template void wrap_positions(Simulation<Dim>&);                                                          \
     template void find_neighbours(Simulation<Dim>&, double);                                                 \
+    template void renew_neighbours(Simulation<Dim>&);                                                        \
     template double maximum_speed(const Simulation<Dim>&);                                                   \
     template double kinetic_energy(const Simulation<Dim>&);
 SPHVV_INSTANTIATE(2)

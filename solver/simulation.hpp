@@ -101,6 +101,11 @@ void wrap_positions(Simulation<Dim>& simulation);
 template <int Dim>
 void find_neighbours(Simulation<Dim>& simulation, double skin);
 
+/// Wraps and builds the neighbour list anew within a step: the particles keep their order, so that fields
+/// formed earlier in the step stay theirs.
+template <int Dim>
+void renew_neighbours(Simulation<Dim>& simulation);
+
 /// Largest |u| over the particles, m/s. NaN if any component is not a number.
 template <int Dim>
 double maximum_speed(const Simulation<Dim>& simulation);

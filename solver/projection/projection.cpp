@@ -125,14 +125,7 @@ void solve_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
                         : laplacian_morris_weights<Dim>(row, f.volume, f.eta_squared, f.poisson.weights(i));
     });
     s.count_sweeps(f.schwaiger ? 3 : 2);
-    const LinearSolve solve = f.poisson.solve(f.pressure[0]);
-    s.work.solver_iterations += solve.iterations;
-    s.work.matrix_entries += solve.matrix_entries;
-    if (!solve.converged) {
-        throw Diverged("pressure solver stopped at residual " + shortest(solve.residual) + " after " +
-                       std::to_string(solve.iterations) + " iterations at t = " + shortest(s.time) +
-                       ", step " + std::to_string(s.step));
-    }
+    solve_poisson(s, f.poisson, f.pressure);
 }
 
 /// u^{n+1} = u* - (dt/rho) grad p, and r^{n+1} = r* + (dt/2)(u^{n+1} - u^n), which equals r^n + (dt/2)(u^n +
@@ -166,6 +159,21 @@ void project(Simulation<Dim>& s, Fields<Dim>& f) {
 }
 
 } // namespace
+
+template <int Dim>
+void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pressure) {
+    const LinearSolve solve = poisson.solve(pressure[0]);
+    s.work.solver_iterations += solve.iterations;
+    s.work.matrix_entries += solve.matrix_entries;
+    if (!solve.converged) {
+        throw Diverged("pressure solver stopped at residual " + shortest(solve.residual) + " after " +
+                       std::to_string(solve.iterations) + " iterations at t = " + shortest(s.time) +
+                       ", step " + std::to_string(s.step));
+    }
+}
+
+template void solve_poisson(Simulation<2>&, PressurePoisson<2>&, Field&);
+template void solve_poisson(Simulation<3>&, PressurePoisson<3>&, Field&);
 
 std::vector<Key> keys() {
     return joined(

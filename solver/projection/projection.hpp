@@ -1,11 +1,17 @@
 #pragma once
 
+#include "sphvv/solver/linear/pressure_poisson.hpp"
 #include "sphvv/solver/schemes.hpp"
 
 namespace sphvv::solver::projection {
 
 /// The keys of a pressure-projection scheme.
 std::vector<Key> keys();
+
+/// Solves the problem whose weights and sources are written, from the pressure as first guess; books the
+/// iterations and the matrix entries. Throws Diverged where the solver stops short of its tolerance.
+template <int Dim>
+void solve_poisson(Simulation<Dim>& simulation, PressurePoisson<Dim>& poisson, Field& pressure);
 
 /// Stages of ISPH_DF (Cummins & Rudman 1999; Xu 2009 §2.2): r* = r^n + dt u^n; u* = u^n + dt nu Laplacian u^n
 /// and the Poisson equation Laplacian p = (rho/dt) div u* at r*; u^{n+1} = u* - (dt/rho) grad p; r^{n+1} =

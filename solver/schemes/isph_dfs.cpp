@@ -18,9 +18,7 @@ void shift(Simulation<Dim>& s, Field& displacement, Field* correction) {
     // The list was made at r*: it follows the particles to r^{n+1}, or is made anew if they went too far for
     // it.
     if (!s.neighbours.follow(constant_arrays<Dim>(displacement))) {
-        wrap_positions(s);
-        s.neighbours.build(s.box, *s.kernel, s.smoothing_length, 0, constant_arrays<Dim>(particles.position),
-                           static_cast<int>(particles.size()));
+        renew_neighbours(s);
     }
     const double length = s.settings.number("shift_coefficient") * maximum_speed(s) * s.time_step;
     const double longest = s.settings.number("shift_limit") * s.particle_spacing;

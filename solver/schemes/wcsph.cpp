@@ -182,9 +182,7 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Fi
     s.add_stage("corrector", [f, &rate, &start, &moved](Simulation<Dim>& sim) {
         const int count = static_cast<int>(sim.particles.size());
         if (!sim.neighbours.follow(constant_arrays<Dim>(moved))) {
-            wrap_positions(sim);
-            sim.neighbours.build(sim.box, *sim.kernel, sim.smoothing_length, 0,
-                                 constant_arrays<Dim>(sim.particles.position), count);
+            renew_neighbours(sim);
         }
         accelerate(sim, *f);
         continuity(sim, rate[0]);

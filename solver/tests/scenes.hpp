@@ -223,4 +223,22 @@ Simulation<Dim> flowing_scene(const Scheme& scheme, const Assignments& given, in
     return scene;
 }
 
+/// check(dimension) for both.
+template <class Check>
+void in_2d_and_3d(const Check& check) {
+    {
+        SCOPED_TRACE("2-D");
+        check(std::integral_constant<int, 2>{});
+    }
+    {
+        SCOPED_TRACE("3-D");
+        check(std::integral_constant<int, 3>{});
+    }
+}
+
+/// The step that even_step() takes.
+inline double even(double time, double limit) {
+    return time / std::ceil(time / limit);
+}
+
 } // namespace sphvv::solver::scenes
