@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "output.hpp"
 #include <algorithm>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -21,18 +22,21 @@ struct Options {
     std::vector<std::string> schemes;
     std::string kernel;
     std::vector<int> ladder;
+    std::vector<double> time_steps;
     std::vector<std::string> settings;
     std::string tier = "quick";
     std::string out;
     int threads = 0;
 
     bool on_command_line() const {
-        return !schemes.empty() || !kernel.empty() || !ladder.empty() || !settings.empty();
+        return !schemes.empty() || !kernel.empty() || !ladder.empty() || !time_steps.empty() ||
+               !settings.empty();
     }
 };
 
 LadderRequest request_of(const verification::Case& flow, const Study& study) {
-    LadderRequest request{&flow, {}, study.settings, study.ladder, std::string(to_string(study.tier))};
+    LadderRequest request{
+        &flow, {}, study.settings, study.ladder, std::string(to_string(study.tier)), study.time_steps};
     for (const std::string& name : study.schemes) {
         request.schemes.push_back(&solver::schemes::find(name));
     }
@@ -61,6 +65,14 @@ LadderRequest request_of(const verification::Case& flow, const Options& options)
             throw UserError("--n: give different numbers of particle spacings, each at least 1");
         }
     }
+    if (!options.time_steps.empty()) {
+        request.time_steps = options.time_steps;
+        std::ranges::sort(request.time_steps, std::greater());
+        if (!(request.time_steps.back() > 0) ||
+            std::ranges::adjacent_find(request.time_steps) != request.time_steps.end()) {
+            throw UserError("--time-steps: give different positive numbers of seconds");
+        }
+    }
     for (const auto& [key, value] : parse_assignments(options.settings)) {
         request.settings[key] = value;
     }
@@ -85,7 +97,7 @@ std::vector<LadderRequest> requests_of(const Options& options) {
     std::vector<std::string> names = options.names;
     if (names.empty()) {
         if (options.on_command_line()) {
-            throw UserError("--scheme, --kernel, --n and --set need a case; accepted: " +
+            throw UserError("--scheme, --kernel, --n, --time-steps and --set need a case; accepted: " +
                             solver::names_of(verification::cases::all()));
         }
         for (const verification::Case* flow : verification::cases::all()) {
@@ -121,6 +133,7 @@ std::vector<LadderRequest> requests_of(const Options& options) {
 
 std::string progress_text(const std::string& group, const verification::RunRecord& run) {
     return group + "  " + run.scheme + "  n = " + std::to_string(run.n) +
+           (run.prescribed_time_step > 0 ? "  dt = " + solver::shortest(run.prescribed_time_step) : "") +
            (run.seed == 1 ? "" : "  seed " + std::to_string(run.seed));
 }
 
@@ -205,6 +218,11 @@ void add_verify(CLI::App& app, Act& act, const std::string& command_line) {
     command
         ->add_option("--n", options->ladder,
                      "particle spacings along the reference length, e.g. 20,40,80,160")
+        ->delimiter(',');
+    command
+        ->add_option(
+            "--time-steps", options->time_steps,
+            "seconds; a ladder in time, at the one --n, against a step 32 times finer than the finest")
         ->delimiter(',');
     command
         ->add_option("--set", options->settings, "KEY=VALUE of the case or of the schemes; may be repeated")

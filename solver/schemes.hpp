@@ -9,6 +9,13 @@
 
 namespace sphvv::solver {
 
+/// Order of a time marching as its step goes to zero on particles and h that stay, with its derivation or
+/// citation.
+struct TimeOrder {
+    double order;
+    std::string source;
+};
+
 /// Declaration of a scheme: the algorithm as a list of stages. One file in solver/schemes/ defines one.
 struct Scheme {
     std::string_view name;
@@ -16,7 +23,8 @@ struct Scheme {
     std::string_view formula;
     std::string_view source;
     bool compressible;     ///< needs a density that matches its pressure at the start
-    std::vector<Key> keys; ///< "kernel" and "h_over_dx" among them
+    std::vector<Key> keys; ///< "kernel", "h_over_dx" and "time_step" among them
+    TimeOrder (*time_order)(const Settings&);
     /// Adds the stages to a simulation whose settings, constants, particles, velocity and, where the scheme
     /// has the field as state, pressure are set.
     void (*assemble_2d)(Simulation<2>&);

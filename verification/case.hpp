@@ -45,7 +45,13 @@ struct Study {
     solver::Assignments settings;
     std::vector<int> ladder;
     std::string cost; ///< run time on two cores, for the reader
+    /// Not empty: a ladder in time, of these steps (s) at the one n of `ladder`.
+    std::vector<double> time_steps{};
 };
+
+/// What the rungs of a ladder differ in: the particle spacing, and all that is tied to it, or the time step
+/// alone.
+enum class Axis { space, time };
 
 struct RunRecord;
 

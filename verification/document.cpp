@@ -98,7 +98,7 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
         settings[key] = value;
     }
     Tree expected = Tree::object();
-    if (const Expectation* e = study.expectation) {
+    if (const auto& e = study.expectation) {
         expected = {{"low", e->order.low ? Tree(*e->order.low) : Tree(nullptr)},
                     {"high", e->order.high ? Tree(*e->order.high) : Tree(nullptr)},
                     {"text", e->text},
@@ -115,7 +115,7 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
              {"order_l1", orders(study.order_l1)},
              {"order_l2", orders(study.order_l2)},
              {"order_linf", orders(study.order_linf)}};
-    if (study.expectation != nullptr && !study.expectation->waiver.empty()) {
+    if (study.expectation && !study.expectation->waiver.empty()) {
         fit["waiver"] = study.expectation->waiver;
     }
     Tree samples = Tree::array();
@@ -127,6 +127,7 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
             {"scheme", study.scheme},
             {"field", study.field},
             {"tier", result.request.tier},
+            {"axis", study.axis == Axis::space ? "h" : "dt"},
             {"settings", settings},
             {"expected", expected},
             {"fit", fit},

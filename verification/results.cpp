@@ -405,7 +405,7 @@ constexpr std::array<Members, 33> members{{
     {"cases[]", "a text", "name summary? equations? source? domain?"},
     {"cases[]", "a number", "dimension? reference_length?"},
     {"cases[]", "a list", "parameters?"},
-    {"studies[]", "a text", "case group scheme field tier?"},
+    {"studies[]", "a text", "case group scheme field tier? axis?"},
     {"studies[]", "an object", "settings? expected? fit"},
     {"studies[]", "a list", "samples"},
     {"studies[].expected", "a number", "low? high?"},

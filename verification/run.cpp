@@ -111,13 +111,36 @@ void describe(const solver::Simulation<Dim>& simulation, RunRecord& record) {
 }
 
 template <int Dim>
-RunRecord run_once(const SceneRecord& scene, const Progress& progress) {
+EndState end_of(const solver::Simulation<Dim>& simulation) {
+    const auto& particles = simulation.particles;
+    const solver::Field& pressure = *particles.find("pressure");
+    EndState end{std::vector(Dim, std::vector<double>(particles.size())),
+                 std::vector<double>(particles.size())};
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+        const int i = particles.id[k];
+        for (int d = 0; d < Dim; ++d) {
+            end.velocity[d][i] = particles.velocity[d][k];
+        }
+        end.pressure[i] = pressure[0][k];
+    }
+    return end;
+}
+
+template <int Dim>
+RunRecord run_once(const SceneRecord& scene, const Progress& progress, EndState* end) {
     const auto begin = WallClock::now();
     solver::Simulation<Dim> simulation = build_scene<Dim>(scene);
     const double setup_seconds = seconds_since(begin);
     RunRecord record = step_to_end(simulation, scene, progress);
     record.setup_seconds = setup_seconds;
+    if (end != nullptr) {
+        *end = end_of(simulation);
+    }
     return record;
+}
+
+RunRecord run_once(const SceneRecord& scene, const Progress& progress, EndState* end = nullptr) {
+    return dimension(scene) == 2 ? run_once<2>(scene, progress, end) : run_once<3>(scene, progress, end);
 }
 
 bool same_bits(double a, double b) {
@@ -176,6 +199,7 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     record.time = simulation.time;
     record.steps = simulation.step;
     record.time_step = time_steps.empty() ? simulation.time_step : median(time_steps);
+    record.prescribed_time_step = scene.scheme_settings.number("time_step");
     record.work = simulation.work;
     compare(scene, simulation, record);
     describe(simulation, record);
@@ -190,15 +214,24 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
 template RunRecord step_to_end(solver::Simulation<2>&, const SceneRecord&, const Progress&);
 template RunRecord step_to_end(solver::Simulation<3>&, const SceneRecord&, const Progress&);
 
+std::vector<FieldError> differences(const EndState& end, const EndState& reference) {
+    const std::vector<double> volume(end.pressure.size(), 1);
+    const std::vector<std::span<const double>> ours(end.velocity.begin(), end.velocity.end());
+    const std::vector<std::span<const double>> theirs(reference.velocity.begin(), reference.velocity.end());
+    return {{"velocity", vector_norms(ours, theirs, volume)},
+            {"pressure", scalar_norms_up_to_a_constant(end.pressure, reference.pressure, volume)}};
+}
+
+RunRecord run_scene_once(const SceneRecord& scene, EndState& end, const Progress& progress) {
+    return run_once(scene, progress, &end);
+}
+
 RunRecord run_scene(const SceneRecord& scene, const Progress& progress) {
-    const auto run = [&] {
-        return dimension(scene) == 2 ? run_once<2>(scene, progress) : run_once<3>(scene, progress);
-    };
-    std::vector<RunRecord> runs{run()};
+    std::vector<RunRecord> runs{run_once(scene, progress)};
     constexpr double repeat_below = 0.5; // seconds
     if (runs[0].seconds < repeat_below) {
         for (int repeat = 0; repeat < 2; ++repeat) {
-            runs.push_back(run());
+            runs.push_back(run_once(scene, progress));
             check_repeat(runs[0], runs.back());
         }
     }

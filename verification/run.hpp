@@ -27,11 +27,12 @@ struct RunRecord {
     std::string diagnosis; ///< the first condition of survival that was violated; empty if none
     double time = 0;       ///< s, reached
     std::int64_t steps = 0;
-    double time_step = 0;           ///< s, median
-    std::vector<FieldError> errors; ///< empty unless survived
-    double maximum_speed_error = 0; ///< max|u| / max|u_exact| - 1 over the domain, at the time reached
-    double energy_error = 0;        ///< kinetic energy over the exact one, minus 1, at the time reached
-    double minimum_spacing = 0;     ///< smallest pair distance / dx over the whole run
+    double time_step = 0;            ///< s, median
+    double prescribed_time_step = 0; ///< s, the scheme's key time_step; 0 where its limits rule
+    std::vector<FieldError> errors;  ///< empty unless survived
+    double maximum_speed_error = 0;  ///< max|u| / max|u_exact| - 1 over the domain, at the time reached
+    double energy_error = 0;         ///< kinetic energy over the exact one, minus 1, at the time reached
+    double minimum_spacing = 0;      ///< smallest pair distance / dx over the whole run
 
     double setup_seconds = 0;
     double seconds = 0;        ///< stepping wall time, median over the repeats
@@ -65,6 +66,19 @@ using Progress = std::function<void(double fraction)>;
 template <int Dim>
 RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& scene,
                       const Progress& progress);
+
+/// Velocity (component by component) and pressure of the particles at the end of a run, in the order of their
+/// identity.
+struct EndState {
+    std::vector<std::vector<double>> velocity;
+    std::vector<double> pressure;
+};
+
+/// Differences of one run's end from another's, particle by particle, all of one volume.
+std::vector<FieldError> differences(const EndState& end, const EndState& reference);
+
+/// Runs a scene once and gives its particles, too.
+RunRecord run_scene_once(const SceneRecord& scene, EndState& end, const Progress& progress = {});
 
 /// Runs a scene to its end time, or to its first violated condition of survival, and compares the particles
 /// at their current positions with the exact solution at the current time. A run shorter than half a second

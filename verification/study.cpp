@@ -23,6 +23,9 @@ std::string group_label(const LadderRequest& request, const SceneRecord& scene) 
             label.append(" ").append(key).append("=").append(value);
         }
     }
+    if (!request.time_steps.empty()) {
+        label += " n=" + std::to_string(request.ladder.front()) + ", in time";
+    }
     return label;
 }
 
@@ -94,12 +97,16 @@ Sample sample_of(const std::vector<const RunRecord*>& runs, const std::string& f
     return sample;
 }
 
-std::vector<double> pairwise_orders(const std::vector<Sample>& samples, double Norms::*norm) {
+double abscissa(const Sample& sample, Axis axis) {
+    return axis == Axis::space ? sample.h : sample.time_step;
+}
+
+std::vector<double> pairwise_orders(const std::vector<Sample>& samples, double Norms::*norm, Axis axis) {
     std::vector<double> orders(samples.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t k = 1; k < samples.size(); ++k) {
         if (samples[k].norms && samples[k - 1].norms) {
             orders[k] = std::log((*samples[k - 1].norms).*norm / (*samples[k].norms).*norm) /
-                        std::log(samples[k - 1].h / samples[k].h);
+                        std::log(abscissa(samples[k - 1], axis) / abscissa(samples[k], axis));
         }
     }
     return orders;
@@ -132,7 +139,7 @@ void judge_order(FieldStudy& study, const std::vector<Rung>& rungs) {
         study.reason = count_of(study.samples.size(), "rung") + ": errors only, an order verdict needs 4";
         return;
     }
-    if (study.expectation == nullptr) {
+    if (!study.expectation) {
         study.verdict = "NONE";
         study.reason = "no order is derived or published for this field of this scheme: observed only";
         study.fit = fit_order(rungs);
@@ -152,35 +159,42 @@ void judge_order(FieldStudy& study, const std::vector<Rung>& rungs) {
     }
 }
 
-FieldStudy judge_field(const Case& flow, const solver::Scheme& scheme, const std::string& field,
-                       const solver::Settings& case_settings,
-                       const std::map<int, std::vector<const RunRecord*>>& by_rung) {
+/// Runs of one scheme, from the coarsest rung to the finest: all seeds of a rung together.
+std::map<double, std::vector<const RunRecord*>> rungs_of(std::span<const RunRecord> runs,
+                                                         std::string_view scheme, Axis axis) {
+    std::map<double, std::vector<const RunRecord*>> rungs;
+    for (const RunRecord& run : runs) {
+        if (run.scheme == scheme) {
+            rungs[axis == Axis::space ? run.n : -run.prescribed_time_step].push_back(&run);
+        }
+    }
+    return rungs;
+}
+
+FieldStudy judge_field(const solver::Scheme& scheme, const std::string& field, Axis axis,
+                       std::optional<Expectation> expectation, std::span<const RunRecord> all_runs) {
     FieldStudy study{};
     study.scheme = scheme.name;
     study.field = field;
-    study.expectation = find_expectation(flow, scheme.name, field, case_settings);
+    study.axis = axis;
+    study.expectation = std::move(expectation);
     std::vector<Rung> rungs;
-    const Sample* lost = nullptr;
-    for (const auto& [n, runs] : by_rung) {
-        study.samples.push_back(sample_of(runs, field));
-    }
-    for (const Sample& sample : study.samples) {
-        if (!sample.survived) {
-            lost = lost == nullptr ? &sample : lost;
-            continue;
+    for (const auto& [coarseness, runs] : rungs_of(all_runs, scheme.name, axis)) {
+        const Sample& sample = study.samples.emplace_back(sample_of(runs, field));
+        if (sample.survived) {
+            Rung& rung = rungs.emplace_back(Rung{abscissa(sample, axis), {}});
+            for (const RunRecord* run : runs) {
+                rung.errors.push_back(error_of(*run, field)->norms.l2);
+            }
         }
-        Rung rung{sample.h, {}};
-        for (const RunRecord* run : by_rung.at(sample.n)) {
-            rung.errors.push_back(error_of(*run, field)->norms.l2);
-        }
-        rungs.push_back(rung);
     }
-    study.order_l1 = pairwise_orders(study.samples, &Norms::l1);
-    study.order_l2 = pairwise_orders(study.samples, &Norms::l2);
-    study.order_linf = pairwise_orders(study.samples, &Norms::linf);
-    if (study.expectation != nullptr && study.expectation->ends_early) {
+    const auto lost = std::ranges::find(study.samples, false, &Sample::survived);
+    study.order_l1 = pairwise_orders(study.samples, &Norms::l1, axis);
+    study.order_l2 = pairwise_orders(study.samples, &Norms::l2, axis);
+    study.order_linf = pairwise_orders(study.samples, &Norms::linf, axis);
+    if (study.expectation && study.expectation->ends_early) {
         judge_fate(study);
-    } else if (lost != nullptr) {
+    } else if (lost != study.samples.end()) {
         study.ended_unexpectedly = true;
         study.verdict = "FAIL";
         study.reason = "the run at n = " + std::to_string(lost->n) + " ended early: " + lost->diagnosis;
@@ -188,6 +202,29 @@ FieldStudy judge_field(const Case& flow, const solver::Scheme& scheme, const std
         judge_order(study, rungs);
     }
     return study;
+}
+
+/// What a ladder in time must show: the order of the scheme's time marching, within what a finite step leaves
+/// of the next order.
+Expectation expectation_in_time(const solver::Scheme& scheme, const std::string& field,
+                                const solver::Settings& settings) {
+    const solver::TimeOrder theory = scheme.time_order(settings);
+    return {.scheme = std::string(scheme.name),
+            .field = field,
+            .where = {},
+            .order = {theory.order - 0.2, theory.order + 0.3, theory.source},
+            .text =
+                "differences from a run with a step 32 times finer than the finest, on the same particles"};
+}
+
+void check_time_ladder(const LadderRequest& request) {
+    if (request.ladder.size() != 1) {
+        throw UserError("a ladder in time takes one resolution; give --n one number, not " +
+                        std::to_string(request.ladder.size()));
+    }
+    if (request.settings.contains("time_step")) {
+        throw UserError("a ladder in time sets the key time_step itself; leave it out");
+    }
 }
 
 std::vector<Front> fronts_of(const std::vector<FieldStudy>& studies) {
@@ -226,8 +263,18 @@ std::vector<SceneRecord> plan(const LadderRequest& request) {
         any_scheme.insert(any_scheme.end(), scheme->keys.begin(), scheme->keys.end());
     }
     std::vector<SceneRecord> scenes;
+    if (!request.time_steps.empty()) {
+        check_time_ladder(request);
+    }
     for (const solver::Scheme* scheme : request.schemes) {
-        for (const int n : request.ladder) {
+        for (const double time_step : request.time_steps) { // on the same particles: one seed
+            solver::Assignments settings = request.settings;
+            settings["time_step"] = solver::shortest(time_step);
+            scenes.push_back(
+                resolve_scene(*request.flow, *scheme, settings, request.ladder.front(), any_scheme));
+            check_scene(scenes.back());
+        }
+        for (const int n : request.time_steps.empty() ? request.ladder : std::vector<int>{}) {
             SceneRecord scene = resolve_scene(*request.flow, *scheme, request.settings, n, any_scheme);
             const bool random = scene.case_settings.word("arrangement") == "jittered";
             check_scene(scene);
@@ -244,36 +291,102 @@ std::vector<FieldStudy> judge_runs(const Case& flow, const std::vector<const sol
                                    const solver::Settings& case_settings, std::span<const RunRecord> runs) {
     std::vector<FieldStudy> studies;
     for (const solver::Scheme* scheme : schemes) {
-        std::map<int, std::vector<const RunRecord*>> by_rung;
-        for (const RunRecord& run : runs) {
-            if (run.scheme == scheme->name) {
-                by_rung[run.n].push_back(&run);
-            }
-        }
         for (const std::string& field : compared_fields) {
-            studies.push_back(judge_field(flow, *scheme, field, case_settings, by_rung));
+            const Expectation* expectation = find_expectation(flow, scheme->name, field, case_settings);
+            studies.push_back(judge_field(*scheme, field, Axis::space,
+                                          expectation == nullptr ? std::nullopt : std::optional(*expectation),
+                                          runs));
         }
     }
     return studies;
 }
 
+std::vector<FieldStudy> judge_runs_in_time(std::span<const SceneRecord> scenes,
+                                           std::span<const RunRecord> runs) {
+    std::vector<FieldStudy> studies;
+    const solver::Scheme* judged = nullptr;
+    for (const SceneRecord& scene : scenes) {
+        for (const std::string& field : compared_fields) {
+            if (scene.scheme != judged) {
+                studies.push_back(
+                    judge_field(*scene.scheme, field, Axis::time,
+                                expectation_in_time(*scene.scheme, field, scene.scheme_settings), runs));
+            }
+        }
+        judged = scene.scheme;
+    }
+    return studies;
+}
+
+namespace {
+
+/// The scene with a step 32 times finer: a reference only 8 times finer would read a first order as 1.1 on
+/// the last pair (verification.md §6).
+SceneRecord reference_of(const SceneRecord& finest) {
+    solver::Assignments settings;
+    for (const solver::Key& key : finest.scheme_settings.keys()) {
+        settings[key.name] = key.value;
+    }
+    settings["time_step"] = solver::shortest(finest.scheme_settings.number("time_step") / 32);
+    SceneRecord scene = finest;
+    scene.scheme_settings = solver::Settings(finest.scheme->keys, settings);
+    return scene;
+}
+
+/// Runs the scenes, which differ in their time step alone, with the finest last.
+void run_in_time(std::span<const SceneRecord> scenes, const std::function<Progress(const SceneRecord&)>& tell,
+                 const std::function<void(RunRecord)>& keep) {
+    EndState exact;
+    const SceneRecord finer = reference_of(scenes.back());
+    const RunRecord reference = run_scene_once(finer, exact, tell(finer));
+    for (const SceneRecord& scene : scenes) {
+        EndState end;
+        RunRecord run = run_scene_once(scene, end, tell(scene));
+        run.errors.clear();
+        if (run.survived && !reference.survived) {
+            run.survived = false;
+            run.diagnosis = "the reference with a time step of " + solver::shortest(reference.time_step) +
+                            " s ended early: " + reference.diagnosis;
+        } else if (run.survived) {
+            run.errors = differences(end, exact);
+        }
+        keep(std::move(run));
+    }
+}
+
+} // namespace
+
 LadderResult run_ladder(const LadderRequest& request, const LadderProgress& progress) {
     const std::vector<SceneRecord> scenes = plan(request);
     LadderResult result{request, group_label(request, scenes.front()), {}, {}, {}, {}};
-    for (const SceneRecord& scene : scenes) {
+    const auto tell = [&](const SceneRecord& scene) -> Progress {
         RunRecord announced;
         announced.scheme = scene.scheme->name;
         announced.n = scene.n;
         announced.seed = scene.seed;
-        const auto tell = [&](double fraction) {
+        announced.prescribed_time_step = scene.scheme_settings.number("time_step");
+        return [&progress, &result, announced](double fraction) {
             if (progress && fraction < 1) {
                 progress(result.group, announced, fraction);
             }
         };
-        result.runs.push_back(run_scene(scene, tell));
+    };
+    const auto keep = [&](RunRecord run) {
+        result.runs.push_back(std::move(run));
         if (progress) {
             progress(result.group, result.runs.back(), 1);
         }
+    };
+    if (!request.time_steps.empty()) {
+        const std::size_t rungs = request.time_steps.size();
+        for (std::size_t first = 0; first < scenes.size(); first += rungs) {
+            run_in_time(std::span(scenes).subspan(first, rungs), tell, keep);
+        }
+        result.studies = judge_runs_in_time(scenes, result.runs);
+        return result;
+    }
+    for (const SceneRecord& scene : scenes) {
+        keep(run_scene(scene, tell(scene)));
     }
     result.studies = judge_runs(*request.flow, request.schemes, scenes.front().case_settings, result.runs);
     result.fronts = fronts_of(result.studies);
@@ -290,7 +403,7 @@ LadderResult run_ladder(const LadderRequest& request, const LadderProgress& prog
 int exit_status(const LadderResult& result) {
     int status = 0;
     for (const FieldStudy& study : result.studies) {
-        const bool waived = study.expectation != nullptr && !study.expectation->waiver.empty();
+        const bool waived = study.expectation && !study.expectation->waiver.empty();
         if (waived || study.verdict == "PASS" || study.verdict == "NONE") {
             continue;
         }

@@ -17,6 +17,7 @@ struct LadderRequest {
     solver::Assignments settings;
     std::vector<int> ladder; ///< ascending
     std::string tier;        ///< "quick", "nightly", "full", or "command" for one given on the command line
+    std::vector<double> time_steps{}; ///< s; not empty: a ladder in time at the one n of `ladder`
 };
 
 /// One rung of one scheme: the seeds' runs put together.
@@ -46,8 +47,9 @@ struct Sample {
 struct FieldStudy {
     std::string scheme;
     std::string field;
-    const Expectation* expectation; ///< nullptr if the project expects nothing in particular
-    std::string verdict;            ///< PASS, FAIL, INCONCLUSIVE, or NONE where no verdict was demanded
+    Axis axis;
+    std::optional<Expectation> expectation; ///< empty if the project expects nothing in particular
+    std::string verdict; ///< PASS, FAIL, INCONCLUSIVE, or NONE where no verdict was demanded
     std::string reason;
     std::optional<OrderFit> fit;
     std::vector<double> order_l1; ///< pairwise; NaN at the coarsest rung
@@ -87,12 +89,17 @@ using LadderProgress = std::function<void(const std::string& group, const RunRec
 /// Resolves every scene of the ladder without running any. Throws UserError for whatever is wrong with it.
 std::vector<SceneRecord> plan(const LadderRequest& request);
 
-/// Runs the ladder and judges it.
+/// Runs the ladder and judges it. The runs of a ladder in time are held against the same scene with a step 32
+/// times finer than their finest, particle by particle.
 LadderResult run_ladder(const LadderRequest& request, const LadderProgress& progress = {});
 
 /// The judgement alone, of runs that were made before: this is what turns samples into verdicts.
 std::vector<FieldStudy> judge_runs(const Case& flow, const std::vector<const solver::Scheme*>& schemes,
                                    const solver::Settings& case_settings, std::span<const RunRecord> runs);
+
+/// The same of a ladder in time: each scheme must show the order that it declares.
+std::vector<FieldStudy> judge_runs_in_time(std::span<const SceneRecord> scenes,
+                                           std::span<const RunRecord> runs);
 
 /// Exit status of a ladder (cli.md): 0; 1 a verdict failed, or is inconclusive, without a waiver; 3 a run
 /// ended early unexpectedly.

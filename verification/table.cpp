@@ -42,6 +42,9 @@ std::string study_table(const FieldStudy& study) {
             out += "n = " + std::to_string(s.n) + " ended early: " + s.diagnosis + "\n";
         }
     }
+    if (study.axis == Axis::time) {
+        out += "errors against the run with a time step 32 times finer than the finest; orders in Δt\n";
+    }
     bool relative = true;
     double spread = 0;
     for (const Sample& s : study.samples) {
@@ -88,13 +91,13 @@ std::string verdict_line(const FieldStudy& study) {
     } else {
         line += "no order";
     }
-    if (study.expectation != nullptr && !study.expectation->ends_early) {
+    if (study.expectation && !study.expectation->ends_early) {
         line += " (expected " + band(study.expectation->order) + ", " + study.expectation->order.source + ")";
-    } else if (study.expectation != nullptr) {
+    } else if (study.expectation) {
         line += " (expected to end early, " + study.expectation->order.source + ")";
     }
     line += " " + study.verdict;
-    if (study.expectation != nullptr && !study.expectation->waiver.empty() && study.verdict != "PASS") {
+    if (study.expectation && !study.expectation->waiver.empty() && study.verdict != "PASS") {
         line += " (waived: " + study.expectation->waiver + ")";
     }
     return line + (study.reason.empty() ? "" : " — " + study.reason);

@@ -31,7 +31,7 @@ PLOT_HEIGHT = 2.75
 FIELD_UNITS = {"velocity": "m/s", "pressure": "Pa"}
 NORM_TITLES = {"l1": "L1", "l2": "L2", "linf": "L∞"}
 COSTS = {"seconds": "run time [s]", "pair_evaluations": "pair evaluations", "nanoseconds": "time of one application [ns]"}
-SPACINGS = {"h": "smoothing length h [m]", "dx": "particle spacing dx [m]"}
+SPACINGS = {"h": "smoothing length h [m]", "dx": "particle spacing dx [m]", "dt": "time step Δt [s]"}
 
 
 @dataclass

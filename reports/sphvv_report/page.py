@@ -335,17 +335,18 @@ class Builder:
         detailed = {scheme: self.detailed_run(group, scheme) for scheme in group.schemes}
         detailed = {scheme: run for scheme, run in detailed.items() if run}
         stamp = stamp_of(group.results())
+        in_time = group.studies[0]["axis"] == "dt"  # one n throughout: nothing to compare schemes at, no run to tell by its n
         return {
             "label": group.label, "anchor": group.anchor, "case": case, "group": group,
             "parameters": self.keep(parameters_table(self.table_names, group, case)),
-            "comparison": self.keep(comparison_table(self.table_names, group)),
+            "comparison": None if in_time else self.keep(comparison_table(self.table_names, group)),
             "convergence": [picture for field in group.fields if (picture := self.draw(figures.convergence(
                 self.figure_names.unique(group.label, field, "convergence"), group.label, field, group.of_field(field),
-                self.looks, stamp)))],
+                self.looks, stamp, "dt" if in_time else "h")))],
             "schemes": [self.scheme_view(group, scheme, detailed.get(scheme)) for scheme in group.schemes],
             "fronts": [self.front_view(group, front) for front in group.fronts],
             "claims": self.keep(claims_table(self.table_names, group)) if group.claims else None,
-            "runs": self.keep(runs_table(self.table_names, group)),
+            "runs": None if in_time else self.keep(runs_table(self.table_names, group)),
             "settings": self.keep(settings_table(self.table_names, group, detailed)),
         }
 

@@ -30,7 +30,7 @@ SAMPLE = {"n": "number", "h": "number", "dx": "number", "particles": "number", "
 EXPECTED = {"low?": "number", "high?": "number", "text?": "text", "source?": "text", "fate?": "text"}
 FIT = {"norm?": "text", "order?": "number", "ci95?": "number", "verdict": "text", "reason?": "text", "waiver?": "text",
        "order_l1?": "numbers", "order_l2?": "numbers", "order_linf?": "numbers"}
-STUDY = {"case": "text", "group": "text", "scheme": "text", "field": "text", "tier?": "text", "settings?": "object",
+STUDY = {"case": "text", "group": "text", "scheme": "text", "field": "text", "tier?": "text", "axis?": "text", "settings?": "object",
          "expected?": EXPECTED, "fit": FIT, "samples": [SAMPLE]}
 STAGE = {"name": "text", "seconds": "number", "pair_evaluations": "number"}
 RUN_FIELD = {"name": "text", "bytes_per_particle": "number", "asked_by": "text"}

@@ -160,6 +160,11 @@ void project(Simulation<Dim>& s, Fields<Dim>& f) {
 
 } // namespace
 
+TimeOrder euler_order(const Settings& /*settings*/) {
+    return {1,
+            "forward Euler: viscosity of the old velocity, pressure constant over the step (Xu 2009 §2.2)"};
+}
+
 template <int Dim>
 void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pressure) {
     const LinearSolve solve = poisson.solve(pressure[0]);

@@ -8,6 +8,9 @@ namespace sphvv::solver::projection {
 /// The keys of a pressure-projection scheme.
 std::vector<Key> keys();
 
+/// Order in time of u^{n+1} = u^n + dt (...)(r* = r^n + dt u^n): one.
+TimeOrder euler_order(const Settings& settings);
+
 /// Solves the problem whose weights and sources are written, from the pressure as first guess; books the
 /// iterations and the matrix entries. Throws Diverged where the solver stops short of its tolerance.
 template <int Dim>

@@ -11,6 +11,7 @@ const Scheme& isph_df() {
         .source = "Cummins & Rudman 1999; Xu 2009 §2.2 (ISPH_DF)",
         .compressible = false,
         .keys = projection::keys(),
+        .time_order = projection::euler_order,
         .assemble_2d = projection::add_divergence_free_stages<2>,
         .assemble_3d = projection::add_divergence_free_stages<3>,
     };

@@ -83,6 +83,7 @@ const Scheme& isph_dfs() {
                         Key::number("shift_limit", 0.1, 0, 1e3, "1", "|dr| <= this dx"),
                         Key::word("shift_correction", "first", {"first", "none"},
                                   "Taylor correction of the shifted fields")}),
+        .time_order = projection::euler_order,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

@@ -228,6 +228,12 @@ void assemble(Simulation<Dim>& s) {
     update_pressure(s, *fields);
 }
 
+TimeOrder time_order(const Settings& settings) {
+    return settings.word("integrator") == "explicit"
+               ? TimeOrder{1, "symplectic Euler (Lee 2008 §1.1)"}
+               : TimeOrder{2, "midpoint predictor-corrector (Issa 2005 §3, scheme PC)"};
+}
+
 } // namespace
 
 const Scheme& wcsph() {
@@ -252,6 +258,7 @@ const Scheme& wcsph() {
              Key::number("acoustic_limit", 0.4, 1e-4, 10, "1", "dt <= this h/c0"),
              Key::number("viscous_limit", 0.125, 1e-4, 10, "1", "dt <= this h^2/nu"),
              Key::number("force_limit", 0.25, 1e-4, 10, "1", "dt <= this sqrt(h/|du/dt|)")}),
+        .time_order = time_order,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

@@ -252,8 +252,8 @@ struct Reference {
         const Field& pressure = *scene.particles.find("pressure");
         const Field* density = scene.particles.find("density");
         double largest = 0;
-        for (const double pi : p) {
-            largest = std::max(largest, std::abs(pi));
+        for (const double value : p) {
+            largest = std::max(largest, std::abs(value));
         }
         for (std::size_t k = 0; k < x.size(); ++k) {
             const int i = scene.particles.id[k];
