@@ -198,6 +198,18 @@ double kinetic_energy(const Simulation<Dim>& simulation) {
            });
 }
 
+template <int Dim>
+std::array<double, Dim> momentum(const Simulation<Dim>& simulation) {
+    std::array<double, Dim> result;
+    for (int d = 0; d < Dim; ++d) {
+        const double* u = simulation.particles.velocity[d];
+        result[d] =
+            simulation.particle_mass *
+            deterministic_sum(static_cast<int>(simulation.particles.size()), [&](int i) { return u[i]; });
+    }
+    return result;
+}
+
 #define SPHVV_INSTANTIATE(Dim)                                                                               \
     template void advance(Simulation<Dim>&);                                                                 \
     template double even_step(const Simulation<Dim>&, double);                                               \
@@ -205,7 +217,8 @@ double kinetic_energy(const Simulation<Dim>& simulation) {
     template void find_neighbours(Simulation<Dim>&, double);                                                 \
     template void renew_neighbours(Simulation<Dim>&);                                                        \
     template double maximum_speed(const Simulation<Dim>&);                                                   \
-    template double kinetic_energy(const Simulation<Dim>&);
+    template double kinetic_energy(const Simulation<Dim>&);                                                  \
+    template std::array<double, Dim> momentum<Dim>(const Simulation<Dim>&);
 SPHVV_INSTANTIATE(2)
 SPHVV_INSTANTIATE(3)
 #undef SPHVV_INSTANTIATE

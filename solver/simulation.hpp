@@ -75,6 +75,13 @@ struct Simulation {
     std::vector<Stage<Dim>> stages;
     Work work;
 
+    /// What a scheme offers for the budgets of a run; empty where it has no such thing. They may form scratch
+    /// fields anew, and leave all else alone.
+    std::function<double(const Simulation&)> elastic_energy; ///< of the fluid, J (per metre in 2-D)
+    /// |1/2 sum_ij r_ij x f_ij| over the pairs of the last neighbour list, N m (per metre in 2-D): the rate
+    /// at which forces between particles change their angular momentum
+    std::function<double(const Simulation&)> internal_torque;
+
     /// Adds a stage; the pair evaluations that it counts through `count_sweeps` are booked to it.
     void add_stage(std::string name, std::function<void(Simulation&)> run) {
         stages.push_back({std::move(name), std::move(run)});
@@ -113,6 +120,10 @@ double maximum_speed(const Simulation<Dim>& simulation);
 /// Sum of m |u|^2 / 2 in a fixed order, J (per metre of depth in 2-D).
 template <int Dim>
 double kinetic_energy(const Simulation<Dim>& simulation);
+
+/// Sum of m u in a fixed order, kg m/s (per metre of depth in 2-D).
+template <int Dim>
+std::array<double, Dim> momentum(const Simulation<Dim>& simulation);
 
 /// Components of a vector field as the arrays that sweeps read.
 template <int Dim>

@@ -1,6 +1,5 @@
-#include "sphvv/solver/operators/divergence_difference.hpp"
-#include "sphvv/solver/operators/momentum_weakly_compressible.hpp"
 #include "sphvv/solver/schemes.hpp"
+#include "sphvv/solver/weakly_compressible/rates.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,36 +8,11 @@
 namespace sphvv::solver::schemes {
 namespace {
 
+using namespace weakly_compressible;
+
 /// Widening of the neighbour search by this share of the support: the predictor moves particles by (dt/2) u,
 /// at most 0.2 h U/c0 = 0.02 h at the acoustic limit.
 constexpr double search_skin = 0.03;
-
-/// Tait's equation of state, p = (rho0 c0^2/gamma) [(rho/rho0)^gamma - 1] + p_b.
-struct Tait {
-    double density;
-    double sound_speed;
-    double gamma;
-    double background;
-
-    double stiffness() const { return density * sound_speed * sound_speed / gamma; }
-    double pressure(double rho) const {
-        return stiffness() * (std::pow(rho / density, gamma) - 1) + background;
-    }
-    double density_at(double p) const {
-        return density * std::pow(1 + (p - background) / stiffness(), 1 / gamma);
-    }
-};
-
-template <int Dim>
-struct Fields {
-    Field& density;
-    Field& pressure;
-    Field& pressure_over_squared_density;
-    Field& specific_volume;
-    Field& acceleration;
-    Tait tait;
-    double eta_squared;
-};
 
 template <int Dim>
 void choose_time_step(Simulation<Dim>& s, double sound_speed) {
@@ -56,30 +30,9 @@ void choose_time_step(Simulation<Dim>& s, double sound_speed) {
     s.time_step = even_step(s, limit);
 }
 
-/// acceleration(density, pressure, velocity) on the current neighbour list.
 template <int Dim>
-void accelerate(Simulation<Dim>& s, Fields<Dim>& f) {
-    const int count = static_cast<int>(s.particles.size());
-    const double* rho = f.density[0];
-    const double* p = f.pressure[0];
-    double* P = f.pressure_over_squared_density[0];
-    double* volume = f.specific_volume[0];
-#pragma omp parallel for simd schedule(static)
-    for (int i = 0; i < count; ++i) {
-        volume[i] = 1 / rho[i];
-        P[i] = p[i] * volume[i] * volume[i];
-    }
-    const MomentumFields<Dim> fields{constant_arrays<Dim>(s.particles.velocity), P, volume};
-    const double mu = s.density * s.kinematic_viscosity;
-    const auto a = arrays<Dim>(f.acceleration);
-    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
-        const Vector<Dim> total =
-            momentum_weakly_compressible<Dim>(row, i, fields, s.particle_mass, mu, f.eta_squared);
-        for (int d = 0; d < Dim; ++d) {
-            a[d][i] = total[d];
-        }
-    });
-    s.count_sweeps(1);
+void add_time_step_stage(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f) {
+    s.add_stage("time_step", [f](Simulation<Dim>& sim) { choose_time_step(sim, f->tait.sound_speed); });
 }
 
 template <int Dim>
@@ -109,34 +62,12 @@ void add_scaled(Field& target, double scale, const Field& increment, int count) 
     }
 }
 
-/// rate_i = drho_i/dt = sum_j m (u_i - u_j).gradW_ij, on the current neighbour list. Source: Lee 2008 §1.3,
-/// Issa S2.
-template <int Dim>
-void continuity(Simulation<Dim>& s, double* rate) {
-    const auto u = constant_arrays<Dim>(s.particles.velocity);
-    const UniformVolume mass{s.particle_mass};
-    for_each_row(s.neighbours,
-                 [&](int i, const Row<Dim>& row) { rate[i] = -divergence_difference<Dim>(row, i, u, mass); });
-    s.count_sweeps(1);
-}
-
-template <int Dim>
-void update_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
-    const int count = static_cast<int>(s.particles.size());
-    const double* rho = f.density[0];
-    double* p = f.pressure[0];
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < count; ++i) {
-        p[i] = f.tait.pressure(rho[i]);
-    }
-}
-
 /// Lee 2008 §1.1: u^{n+1} from p^n, u^n; r^{n+1} = r^n + dt u^{n+1}; rho^{n+1} = rho^n - dt rho^n div
 /// u^{n+1}, on the neighbours of r^n. Updating rho with the new velocity makes the acoustic part symplectic:
 /// with the old one the step is forward Euler for sound and unstable at any dt > nu/c0^2.
 template <int Dim>
-void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Fields<Dim>>& f) {
-    Field& rate = s.particles.field("density_rate", 1, Lifetime::scratch, "continuity");
+void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f) {
+    add_time_step_stage(s, f);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
     s.add_stage("momentum", [f](Simulation<Dim>& sim) {
         const int count = static_cast<int>(sim.particles.size());
@@ -144,9 +75,9 @@ void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Fields<Dim>>&
         sim.maximum_acceleration = largest<Dim>(f->acceleration, count);
         add_scaled<Dim>(sim.particles.velocity, sim.time_step, f->acceleration, count);
     });
-    s.add_stage("continuity", [f, &rate](Simulation<Dim>& sim) {
-        continuity(sim, rate[0]);
-        add_scaled<1>(f->density, sim.time_step, rate, static_cast<int>(sim.particles.size()));
+    s.add_stage("continuity", [f](Simulation<Dim>& sim) {
+        continuity(sim, *f);
+        add_scaled<1>(f->density, sim.time_step, f->density_rate, static_cast<int>(sim.particles.size()));
     });
     s.add_stage("drift", [](Simulation<Dim>& sim) {
         add_scaled<Dim>(sim.particles.position, sim.time_step, sim.particles.velocity,
@@ -156,17 +87,17 @@ void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Fields<Dim>>&
 
 /// Issa 2005 §3, scheme PC: X^{n+1/2} = X^n + (dt/2) R(X^n); X^{n+1} = X^n + dt R(X^{n+1/2}); second order.
 template <int Dim>
-void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Fields<Dim>>& f) {
-    Field& rate = s.particles.field("density_rate", 1, Lifetime::scratch, "continuity");
+void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f) {
     Field& start = s.particles.field("step_start", 2 * Dim + 1, Lifetime::scratch, "predictor");
     Field& moved = s.particles.field("predictor_displacement", Dim, Lifetime::scratch, "predictor");
+    add_time_step_stage(s, f);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });
-    s.add_stage("predictor", [f, &rate, &start, &moved](Simulation<Dim>& sim) {
+    s.add_stage("predictor", [f, &start, &moved](Simulation<Dim>& sim) {
         const int count = static_cast<int>(sim.particles.size());
         const double half = 0.5 * sim.time_step;
         accelerate(sim, *f);
         sim.maximum_acceleration = largest<Dim>(f->acceleration, count);
-        continuity(sim, rate[0]);
+        continuity(sim, *f);
         for (int d = 0; d < Dim; ++d) {
             start.components[d] = sim.particles.position.components[d];
             start.components[Dim + d] = sim.particles.velocity.components[d];
@@ -176,16 +107,16 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Fi
         add_scaled<Dim>(moved, half, sim.particles.velocity, count);
         add_scaled<Dim>(sim.particles.position, 1, moved, count);
         add_scaled<Dim>(sim.particles.velocity, half, f->acceleration, count);
-        add_scaled<1>(f->density, half, rate, count);
+        add_scaled<1>(f->density, half, f->density_rate, count);
         update_pressure(sim, *f);
     });
-    s.add_stage("corrector", [f, &rate, &start, &moved](Simulation<Dim>& sim) {
+    s.add_stage("corrector", [f, &start, &moved](Simulation<Dim>& sim) {
         const int count = static_cast<int>(sim.particles.size());
         if (!sim.neighbours.follow(constant_arrays<Dim>(moved))) {
             renew_neighbours(sim);
         }
         accelerate(sim, *f);
-        continuity(sim, rate[0]);
+        continuity(sim, *f);
         for (int d = 0; d < Dim; ++d) {
             sim.particles.position.components[d] = start.components[d];
         }
@@ -195,37 +126,98 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Fi
         }
         f->density.components[0] = start.components.back();
         add_scaled<Dim>(sim.particles.velocity, sim.time_step, f->acceleration, count);
-        add_scaled<1>(f->density, sim.time_step, rate, count);
+        add_scaled<1>(f->density, sim.time_step, f->density_rate, count);
+    });
+}
+
+/// What the Verlet scheme remembers of the step before.
+template <int Dim>
+struct StepBefore {
+    Field& velocity;
+    Field& density;
+    bool leaps = false; ///< over two steps; otherwise the step in progress is an Euler step
+};
+
+/// Nothing to leap from in the first step; the two solutions of a leap over two steps, on odd and even steps,
+/// drift apart unless an Euler step brings them together now and then; and the leap needs steps of one
+/// length.
+template <int Dim>
+bool leaps(const Simulation<Dim>& s, double time_step_before) {
+    constexpr double round_off = 1e-9; // of dividing the time left into even steps
+    return s.step > 1 && (s.step - 1) % s.settings.integer("restart_interval") != 0 &&
+           std::abs(s.time_step - time_step_before) <= round_off * s.time_step;
+}
+
+/// value^{n+1} = value^{n-1} + 2 dt rate, or value^n + dt rate; value^n becomes the value before.
+template <int Components>
+void step_verlet(Field& value, Field& before, double dt, bool leap, const Field& rate, int count) {
+    for (int d = 0; d < Components; ++d) {
+        double* now = value[d];
+        double* then = before[d];
+        const double* change = rate[d];
+        const double* from = leap ? then : now;
+        const double step = leap ? 2 * dt : dt;
+#pragma omp parallel for simd schedule(static)
+        for (int i = 0; i < count; ++i) {
+            const double next = from[i] + step * change[i];
+            then[i] = now[i];
+            now[i] = next;
+        }
+    }
+}
+
+/// u^{n+1} = u^{n-1} + 2 dt a^n, rho^{n+1} = rho^{n-1} + 2 dt (drho/dt)^n, r^{n+1} = r^n + dt u^n + dt^2/2
+/// a^n; u^n + dt a^n and rho^n + dt (drho/dt)^n where it does not leap. Source: Verlet 1967, in the form of
+/// SPHysics (Gomez-Gesteira et al. 2012).
+template <int Dim>
+void add_verlet_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f) {
+    const auto before = std::make_shared<StepBefore<Dim>>(
+        StepBefore<Dim>{s.particles.field("previous_velocity", Dim, Lifetime::state, "verlet"),
+                        s.particles.field("previous_density", 1, Lifetime::state, "verlet")});
+    s.add_stage("time_step", [f, before](Simulation<Dim>& sim) {
+        const double time_step_before = sim.time_step;
+        choose_time_step(sim, f->tait.sound_speed);
+        before->leaps = leaps(sim, time_step_before);
+    });
+    s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
+    s.add_stage("momentum", [f](Simulation<Dim>& sim) {
+        accelerate(sim, *f);
+        sim.maximum_acceleration = largest<Dim>(f->acceleration, static_cast<int>(sim.particles.size()));
+    });
+    s.add_stage("continuity", [f](Simulation<Dim>& sim) { continuity(sim, *f); });
+    s.add_stage("verlet", [f, before](Simulation<Dim>& sim) {
+        const int count = static_cast<int>(sim.particles.size());
+        const double dt = sim.time_step;
+        add_scaled<Dim>(sim.particles.position, dt, sim.particles.velocity, count);
+        add_scaled<Dim>(sim.particles.position, dt * dt / 2, f->acceleration, count);
+        step_verlet<Dim>(sim.particles.velocity, before->velocity, dt, before->leaps, f->acceleration, count);
+        step_verlet<1>(f->density, before->density, dt, before->leaps, f->density_rate, count);
     });
 }
 
 template <int Dim>
 void assemble(Simulation<Dim>& s) {
-    const double sound_speed = s.settings.number("c0_over_u") * s.reference_speed;
-    const double eta = s.settings.number("eta_over_h") * s.smoothing_length;
-    Particles<Dim>& particles = s.particles;
-    auto fields = std::make_shared<Fields<Dim>>(Fields<Dim>{
-        particles.field("density", 1, Lifetime::state, "continuity"),
-        particles.field("pressure", 1, Lifetime::state, "equation_of_state"),
-        particles.field("pressure_over_squared_density", 1, Lifetime::scratch, "momentum"),
-        particles.field("specific_volume", 1, Lifetime::scratch, "momentum"),
-        particles.field("acceleration", Dim, Lifetime::scratch, "momentum"),
-        Tait{s.density, sound_speed, s.settings.number("gamma"),
-             s.settings.number("background_pressure") * s.density * s.reference_speed * s.reference_speed},
-        eta * eta});
-    s.add_stage("time_step", [sound_speed](Simulation<Dim>& sim) { choose_time_step(sim, sound_speed); });
-    if (s.settings.word("integrator") == "explicit") {
-        add_explicit_stages(s, fields);
+    const Tait tait{s.density, s.settings.number("c0_over_u") * s.reference_speed, s.settings.number("gamma"),
+                    s.settings.number("background_pressure") * s.density * s.reference_speed *
+                        s.reference_speed};
+    const auto f = std::make_shared<Rates<Dim>>(rates(s, tait));
+    const std::string& integrator = s.settings.word("integrator");
+    if (integrator == "explicit") {
+        add_explicit_stages(s, f);
+    } else if (integrator == "predictor_corrector") {
+        add_predictor_corrector_stages(s, f);
     } else {
-        add_predictor_corrector_stages(s, fields);
+        add_verlet_stages(s, f);
     }
-    s.add_stage("equation_of_state", [fields](Simulation<Dim>& sim) { update_pressure(sim, *fields); });
+    s.add_stage("equation_of_state", [f](Simulation<Dim>& sim) { update_pressure(sim, *f); });
+    s.elastic_energy = [f](const Simulation<Dim>& sim) { return elastic_energy(sim, *f); };
+    s.internal_torque = [f](const Simulation<Dim>& sim) { return internal_torque(sim, *f); };
     // The scene gives the pressure at the start; the density that goes with it keeps the start free of sound.
-    const int count = static_cast<int>(particles.size());
+    const int count = static_cast<int>(s.particles.size());
     for (int i = 0; i < count; ++i) {
-        fields->density[0][i] = fields->tait.density_at(fields->pressure[0][i] + fields->tait.background);
+        f->density[0][i] = tait.density_at(f->pressure[0][i] + tait.background);
     }
-    update_pressure(s, *fields);
+    update_pressure(s, *f);
 }
 
 TimeOrder time_order(const Settings& settings) {
@@ -239,22 +231,41 @@ TimeOrder time_order(const Settings& settings) {
 const Scheme& wcsph() {
     static const Scheme scheme{
         .name = "wcsph",
-        .summary = "weakly compressible SPH, continuity equation, Tait equation of state, Morris viscosity",
+        .summary =
+            "weakly compressible SPH, continuity equation, Tait equation of state, in every published form",
         .formula =
             "drho/dt = sum m u_ij.gradW; du/dt = -sum m (p_i/rho_i^2 + p_j/rho_j^2) gradW + viscosity; "
-            "p = (rho0 c0^2/gamma) [(rho/rho0)^gamma - 1]",
-        .source = "Lee 2008 §1.1; Issa 2005 §3 (predictor-corrector)",
+            "p = (rho0 c0^2/gamma) [(rho/rho0)^gamma - 1]; other forms: continuity, pressure_force, "
+            "viscosity",
+        .source = "Lee 2008 §1.1; Issa 2005 §2, §3 (predictor-corrector); Oger et al. 2007; Verlet 1967",
         .compressible = true,
         .keys = joined(
             common_keys("wendland_c2", 1.3),
-            {Key::word("integrator", "explicit", {"explicit", "predictor_corrector"},
-                       "explicit: Lee 2008, first order; predictor_corrector: Issa 2005, second order"),
+            {Key::word("continuity", "sigma_2", {"sigma_2", "sigma_1", "renormalised"},
+                       "drho_i/dt: sigma_2, sum m u_ij.gradW; sigma_1, rho_i sum V_j u_ij.gradW; "
+                       "renormalised, rho_i sum V_j u_ij.L_i gradW; energy is conserved with the "
+                       "pressure_force sigma_2, sigma_1 and renormalised_coherent in turn"),
+             Key::word("pressure_force", "sigma_2",
+                       {"sigma_2", "sigma_1", "plain", "difference", "renormalised_coherent", "renormalised",
+                        "taylor", "hybrid_taylor"},
+                       "-sum m X_ij: sigma_2, X = (p_i/rho_i^2 + p_j/rho_j^2) gradW; otherwise rho_i rho_j X "
+                       "is sigma_1, (p_i + p_j) gradW; plain, p_j gradW; difference, (p_j - p_i) gradW; "
+                       "renormalised_coherent, (p_i L_i + p_j L_j) gradW; renormalised, (p_i + p_j) L_i "
+                       "gradW; taylor, (p_j - p_i) L_i gradW; hybrid_taylor, taylor, but renormalised at and "
+                       "next to particles whose lowest eigenvalue of 1/L_i is below 0.97"),
+             Key::word("viscosity", "morris", {"morris", "monaghan_cleary"},
+                       "morris: along u_ij; monaghan_cleary: along r_ij, with factor 2(dim+2)"),
+             Key::word("integrator", "explicit", {"explicit", "predictor_corrector", "verlet"},
+                       "explicit: Lee 2008, first order; predictor_corrector: Issa 2005, second order; "
+                       "verlet: a leap over two steps, as in SPHysics"),
+             Key::integer("restart_interval", 50, 1, 1000000,
+                          "verlet: every so many steps, and where the step has changed, an Euler step"),
              Key::number("c0_over_u", 10, 1, 1e4, "1", "sound speed over the largest expected speed"),
              Key::number("gamma", 7, 1, 20, "1", "exponent of the Tait equation"),
              Key::number("background_pressure", 0.5, 0, 1e6, "1",
                          "constant added to p, in units of rho0 U^2; 0.5 keeps Bernoulli pressures from "
                          "tension, which is unstable (Swegle); the papers use 0"),
-             Key::number("eta_over_h", 0, 0, 1, "1", "eta/h in the Morris viscosity"),
+             Key::number("eta_over_h", 0, 0, 1, "1", "eta/h in the viscosity"),
              Key::number("acoustic_limit", 0.4, 1e-4, 10, "1", "dt <= this h/c0"),
              Key::number("viscous_limit", 0.125, 1e-4, 10, "1", "dt <= this h^2/nu"),
              Key::number("force_limit", 0.25, 1e-4, 10, "1", "dt <= this sqrt(h/|du/dt|)")}),

@@ -73,6 +73,170 @@ TEST(CitedAlgorithm, IsCarriedOutByTheWeaklyCompressibleScheme) {
     }
 }
 
+/// Every word of a key.
+const std::vector<std::string>& words(std::string_view key) {
+    const std::vector<Key>& keys = schemes::find("wcsph").keys;
+    return std::ranges::find(keys, key, &Key::name)->choices;
+}
+
+/// Particles pushed together in the middle of the box and apart at its sides, so that some are taken for the
+/// free surface and some are not.
+template <int Dim>
+Simulation<Dim> uneven_scene(const Assignments& given) {
+    Simulation<Dim> scene = general_scene<Dim>(schemes::find("wcsph"), given, Dim == 2 ? 16 : 12);
+    for (int d = 0; d < Dim; ++d) {
+        for (double& x : scene.particles.position.components[d]) {
+            x += 0.05 * std::sin(2 * pi * x);
+            x -= std::floor(x);
+        }
+    }
+    return scene;
+}
+
+TEST(CitedAlgorithm, IsCarriedOutByEveryWeaklyCompressibleForm) {
+    for (const std::string& continuity : words("continuity")) {
+        for (const std::string& pressure_force : words("pressure_force")) {
+            for (const std::string& viscosity : words("viscosity")) {
+                SCOPED_TRACE(continuity + " " + pressure_force + " " + viscosity);
+                in_2d_and_3d([&](auto dimension) {
+                    constexpr int Dim = dimension;
+                    const Scheme& scheme = schemes::find("wcsph");
+                    Simulation<Dim> scene =
+                        general_scene<Dim>(scheme, {{"continuity", continuity},
+                                                    {"pressure_force", pressure_force},
+                                                    {"viscosity", viscosity},
+                                                    {"background_pressure", "0.5"},
+                                                    {"gamma", "5"},
+                                                    {"c0_over_u", "3"}, // uneven densities
+                                                    {"eta_over_h", viscosity == "morris" ? "0" : "0.1"},
+                                                    {"h_over_dx", "1.5"}});
+                    Reference<Dim> reference(scene);
+                    reference.take_forms(scene.settings);
+                    reference.set_tait(3 * 1.5, 5, 0.5 * 3 * 1.5 * 1.5);
+                    scheme.assemble(scene);
+                    for (int step = 0; step < 2; ++step) {
+                        advance(scene);
+                        reference.explicit_step(scene.time_step,
+                                                scene.settings.number("eta_over_h") * scene.smoothing_length);
+                        reference.expect_equals(scene, 1e-11);
+                    }
+                });
+            }
+        }
+    }
+}
+
+TEST(CitedAlgorithm, TellsTheFreeSurfaceByTheLowestEigenvalue) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        const Scheme& scheme = schemes::find("wcsph");
+        // With a skin, some listed neighbours do not interact and must not tell.
+        for (const std::string integrator : {"explicit", "predictor_corrector"}) {
+            Simulation<Dim> scene = uneven_scene<Dim>(
+                {{"pressure_force", "hybrid_taylor"}, {"integrator", integrator}, {"c0_over_u", "3"}});
+            Reference<Dim> reference(scene);
+            reference.take_forms(scene.settings);
+            reference.set_tait(3 * 1.5, 7, 0.5 * 3 * 1.5 * 1.5);
+            scheme.assemble(scene);
+            const std::vector<bool> near = reference.near_surface(reference.pairs_at(reference.x));
+            EXPECT_GT(std::ranges::count(near, true), 10);
+            EXPECT_GT(std::ranges::count(near, false), 10);
+            for (int step = 0; step < 2; ++step) {
+                advance(scene);
+                if (integrator == "explicit") {
+                    reference.explicit_step(scene.time_step, 0);
+                } else {
+                    reference.predictor_corrector_step(scene.time_step, 0);
+                }
+                reference.expect_equals(scene, 1e-11);
+            }
+        }
+    });
+}
+
+// A stray particle has no L: it is all surface, and its gradients are as they are.
+TEST(CitedAlgorithm, TakesAStrayParticleForTheFreeSurface) {
+    const Scheme& scheme = schemes::find("wcsph");
+    Simulation<2> scene = still_scene<2>(scheme, {{"pressure_force", "hybrid_taylor"}}, 9);
+    scene.box.periodic.fill(false);
+    scene.particles.position[0][0] = 1; // into a corner, out of reach of a row pushed inwards
+    scene.particles.position[1][0] = 1;
+    for (std::size_t i = 1; i < scene.particles.size(); ++i) {
+        for (int d = 0; d < 2; ++d) {
+            scene.particles.position[d][i] *= 0.5;
+        }
+    }
+    scheme.assemble(scene);
+    advance(scene);
+    const auto stray = std::ranges::find(scene.particles.id, 0) - scene.particles.id.begin();
+    EXPECT_EQ((*scene.particles.find("lowest_eigenvalue"))[0][stray], 0);
+    const Field& L = *scene.particles.find("renormalisation");
+    EXPECT_EQ(L[0][stray], 1);
+    EXPECT_EQ(L[1][stray], 0);
+    EXPECT_EQ(L[2][stray], 1);
+}
+
+TEST(CitedAlgorithm, IsCarriedOutByTheIntegratorsWithEveryKindOfForm) {
+    struct Forms {
+        const char* continuity;
+        const char* pressure_force;
+    };
+    for (const Forms& forms :
+         {Forms{"sigma_2", "sigma_2"}, Forms{"sigma_1", "sigma_1"},
+          Forms{"renormalised", "renormalised_coherent"}, Forms{"renormalised", "taylor"}}) {
+        for (const std::string integrator : {"explicit", "predictor_corrector", "verlet"}) {
+            SCOPED_TRACE(integrator + " " + forms.continuity + " " + forms.pressure_force);
+            in_2d_and_3d([&](auto dimension) {
+                constexpr int Dim = dimension;
+                const Scheme& scheme = schemes::find("wcsph");
+                Simulation<Dim> scene = general_scene<Dim>(scheme, {{"integrator", integrator},
+                                                                    {"restart_interval", "3"},
+                                                                    {"continuity", forms.continuity},
+                                                                    {"pressure_force", forms.pressure_force},
+                                                                    {"c0_over_u", "12"},
+                                                                    {"h_over_dx", "1.5"}});
+                Reference<Dim> reference(scene);
+                reference.take_forms(scene.settings);
+                reference.set_tait(12 * 1.5, 7, 0.5 * 3 * 1.5 * 1.5);
+                scheme.assemble(scene);
+                for (int step = 1; step <= 5; ++step) {
+                    advance(scene);
+                    if (integrator == "explicit") {
+                        reference.explicit_step(scene.time_step, 0);
+                    } else if (integrator == "predictor_corrector") {
+                        reference.predictor_corrector_step(scene.time_step, 0);
+                    } else { // Euler steps 1 and 4
+                        reference.verlet_step(scene.time_step, 0, step % 3 != 1);
+                    }
+                    reference.expect_equals(scene, 1e-11);
+                }
+            });
+        }
+    }
+}
+
+TEST(CitedAlgorithm, AVerletStepLeapsOverEqualStepsOnly) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        const Scheme& scheme = schemes::find("wcsph");
+        Assignments given{{"integrator", "verlet"}, {"time_step", "0.001"}, {"h_over_dx", "1.5"}};
+        Simulation<Dim> scene = general_scene<Dim>(scheme, given);
+        Reference<Dim> reference(scene);
+        reference.set_tait(10 * 1.5, 7, 0.5 * 3 * 1.5 * 1.5);
+        scheme.assemble(scene);
+        for (int step = 1; step <= 6; ++step) {
+            if (step == 4) {
+                given["time_step"] = "0.0005";
+                scene.settings = Settings(scheme.keys, given);
+            }
+            advance(scene);
+            EXPECT_NEAR(scene.time_step, step < 4 ? 0.001 : 0.0005, 1e-15);
+            reference.verlet_step(scene.time_step, 0, step != 1 && step != 4);
+            reference.expect_equals(scene, 1e-11);
+        }
+    });
+}
+
 /// Listed pairs that are not within the support: some in a list with a skin, none in a list made without.
 template <int Dim>
 int pairs_in_the_skin(const NeighbourList<Dim>& list) {
@@ -135,7 +299,7 @@ TEST(CitedAlgorithm, IsCarriedOutWhereTheNeighbourListCannotFollow) {
 }
 
 TEST(TimeStep, FollowsTheLargestAccelerationOfTheStepBefore) {
-    for (const std::string integrator : {"explicit", "predictor_corrector"}) {
+    for (const std::string integrator : {"explicit", "predictor_corrector", "verlet"}) {
         const Scheme& scheme = schemes::find("wcsph");
         Simulation<2> scene = flowing_scene<2>(
             scheme, {{"integrator", integrator}, {"force_limit", "0.01"}, {"h_over_dx", "1.5"}}, 16, 0.1);

@@ -194,24 +194,103 @@ struct Reference {
             p[i] = B * (std::pow(rho[i] / rho0, gamma) - 1) + background;
         }
     }
-    Vectors acceleration(const std::vector<std::vector<Neighbour<Dim>>>& pairs, double eta) const {
-        Vectors a(x.size(), Vector<Dim>::Zero());
+    // Words of the settings of these names.
+    std::string continuity = "sigma_2";
+    std::string pressure_force = "sigma_2";
+    std::string viscosity = "morris";
+
+    void take_forms(const Settings& settings) {
+        continuity = settings.word("continuity");
+        pressure_force = settings.word("pressure_force");
+        viscosity = settings.word("viscosity");
+    }
+    /// L_i^-1 with the volumes m/rho_j.
+    std::vector<Matrix<Dim>> moments(const std::vector<std::vector<Neighbour<Dim>>>& pairs) const {
+        std::vector<Matrix<Dim>> result(x.size(), Matrix<Dim>::Zero());
         for (std::size_t i = 0; i < x.size(); ++i) {
             for (const auto& pair : pairs[i]) {
-                const int j = pair.j;
-                const double r2 = pair.distance * pair.distance;
-                a[i] -= m * (p[i] / (rho[i] * rho[i]) + p[j] / (rho[j] * rho[j])) * gradW(pair);
-                a[i] += m * 2 * rho0 * nu / (rho[i] * rho[j]) * separation(pair).dot(gradW(pair)) /
-                        (r2 + eta * eta) * (u[i] - u[j]);
+                result[i] -= m / rho[pair.j] * separation(pair) * gradW(pair).transpose();
+            }
+        }
+        return result;
+    }
+    /// Particles whose L^-1 has an eigenvalue below 0.97, and all that interact with one (Oger 2007).
+    std::vector<bool> near_surface(const std::vector<std::vector<Neighbour<Dim>>>& pairs) const {
+        std::vector<bool> surface;
+        for (const Matrix<Dim>& M : moments(pairs)) {
+            surface.push_back(Eigen::SelfAdjointEigenSolver<Matrix<Dim>>(M).eigenvalues().minCoeff() < 0.97);
+        }
+        std::vector<bool> result = surface;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            for (const auto& pair : pairs[i]) {
+                result[i] = result[i] || surface[pair.j];
+            }
+        }
+        return result;
+    }
+    /// What the pair adds to grad p/rho, divided by m: Issa P1, P2; Oger 2007.
+    Vector<Dim> pressure_term(int i, const Neighbour<Dim>& pair, const Matrix<Dim>& Li, const Matrix<Dim>& Lj,
+                              bool near) const {
+        const int j = pair.j;
+        const Vector<Dim> g = gradW(pair);
+        const double product = rho[i] * rho[j];
+        if (pressure_force == "sigma_2") {
+            return (p[i] / (rho[i] * rho[i]) + p[j] / (rho[j] * rho[j])) * g;
+        }
+        if (pressure_force == "sigma_1") {
+            return (p[i] + p[j]) / product * g;
+        }
+        if (pressure_force == "plain") {
+            return p[j] / product * g;
+        }
+        if (pressure_force == "difference") {
+            return (p[j] - p[i]) / product * g;
+        }
+        if (pressure_force == "renormalised_coherent") {
+            return (p[i] * Li + p[j] * Lj) * g / product;
+        }
+        if (pressure_force == "renormalised" || (pressure_force == "hybrid_taylor" && near)) {
+            return (p[i] + p[j]) / product * Li * g;
+        }
+        return (p[j] - p[i]) / product * Li * g; // taylor
+    }
+    /// The viscous acceleration of i by the pair, divided by m.
+    Vector<Dim> viscous_term(int i, const Neighbour<Dim>& pair, double eta) const {
+        const double r2 = pair.distance * pair.distance + eta * eta;
+        const double over_densities = rho0 * nu / (rho[i] * rho[pair.j]);
+        const Vector<Dim> r = separation(pair);
+        const Vector<Dim> apart = u[i] - u[pair.j];
+        if (viscosity == "morris") {
+            return 2 * over_densities * r.dot(gradW(pair)) / r2 * apart;
+        }
+        return 2 * (Dim + 2) * over_densities * apart.dot(r) / r2 * gradW(pair);
+    }
+    Vectors acceleration(const std::vector<std::vector<Neighbour<Dim>>>& pairs, double eta) const {
+        const std::vector<Matrix<Dim>> M = moments(pairs);
+        const std::vector<bool> near = near_surface(pairs);
+        Vectors a(x.size(), Vector<Dim>::Zero());
+        for (int i = 0; i < static_cast<int>(x.size()); ++i) {
+            for (const auto& pair : pairs[i]) {
+                a[i] -= m * pressure_term(i, pair, M[i].inverse(), M[pair.j].inverse(), near[i]);
+                a[i] += m * viscous_term(i, pair, eta);
             }
         }
         return a;
     }
     std::vector<double> density_rate(const std::vector<std::vector<Neighbour<Dim>>>& pairs) const {
+        const std::vector<Matrix<Dim>> M = moments(pairs);
         std::vector<double> rate(x.size(), 0.0);
         for (std::size_t i = 0; i < x.size(); ++i) {
             for (const auto& pair : pairs[i]) {
-                rate[i] += m * (u[i] - u[pair.j]).dot(gradW(pair));
+                const Vector<Dim> apart = u[i] - u[pair.j];
+                const double V_j = m / rho[pair.j];
+                if (continuity == "sigma_2") {
+                    rate[i] += m * apart.dot(gradW(pair));
+                } else if (continuity == "sigma_1") {
+                    rate[i] += rho[i] * V_j * apart.dot(gradW(pair));
+                } else {
+                    rate[i] += rho[i] * V_j * apart.dot(M[i].inverse() * gradW(pair));
+                }
             }
         }
         return rate;
@@ -246,6 +325,25 @@ struct Reference {
             update_pressure();
             step = dt;
         }
+    }
+
+    Vectors u_before;
+    std::vector<double> rho_before;
+    /// Verlet 1967, as in SPHysics: a leap over two steps, or an Euler step.
+    void verlet_step(double dt, double eta, bool leap) {
+        const auto pairs = pairs_at(x);
+        const Vectors a = acceleration(pairs, eta);
+        const auto rate = density_rate(pairs);
+        const Vectors u_now = u;
+        const std::vector<double> rho_now = rho;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            x[i] += dt * u[i] + dt * dt / 2 * a[i];
+            u[i] = leap ? u_before[i] + 2 * dt * a[i] : u[i] + dt * a[i];
+            rho[i] = leap ? rho_before[i] + 2 * dt * rate[i] : rho[i] + dt * rate[i];
+        }
+        u_before = u_now;
+        rho_before = rho_now;
+        update_pressure();
     }
 
     void expect_equals(const Simulation<Dim>& scene, double tolerance) const {

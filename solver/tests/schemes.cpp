@@ -52,8 +52,9 @@ std::vector<Variant> variants() {
                 const bool stands_for_all =
                     choice == "quintic_spline" || choice == "wendland_c2" || choice == "gaussian";
                 if (choice != key.value && (key.name != "kernel" || stands_for_all)) {
-                    result.push_back(
-                        {scheme, {{key.name, choice}}, std::string(scheme->name) + "_" + choice});
+                    result.push_back({scheme,
+                                      {{key.name, choice}},
+                                      std::string(scheme->name) + "_" + key.name + "_" + choice});
                 }
             }
         }
@@ -251,6 +252,29 @@ TEST_P(EveryScheme, IsTheSameForAMovingObserver) {
     });
 }
 
+/// nu_eff/nu of the Monaghan-Cleary viscosity on the lattice of a scene, for the shear waves t sin(k e.r)
+/// that its flow is made of, at small k: -(dim+2) sum_j V F_ij (e.r_ij)^2 (t.r_ij)^2/r_ij^2, which is 1 as an
+/// integral. The pairs of a lattice are not spread evenly over the directions. In 2-D the sum along the
+/// diagonals exceeds 1 by as much as the one along the axes falls short of it, since e_x^4 + e_y^4 + 2 e_x^2
+/// e_y^2 = 1 ties them to the isotropic sum; the Taylor-Green vortices are waves along the diagonals, the ABC
+/// flow along the axes. (Issa sheet §2 has the sums along the axes.)
+template <int Dim>
+double lattice_viscosity(const Simulation<Dim>& scene) {
+    Points<Dim> points;
+    for (int d = 0; d < Dim; ++d) {
+        points[d] = scene.particles.position.components[d];
+    }
+    const double V = scene.particle_mass / scene.density;
+    const auto pairs = all_neighbours<Dim>(scene.box, points, *scene.kernel, scene.smoothing_length);
+    double total = 0;
+    for (const auto& pair : pairs.front()) {
+        const double e = Dim == 2 ? (pair.r[0] + pair.r[1]) / std::sqrt(2.) : pair.r[0];
+        const double t = Dim == 2 ? (pair.r[0] - pair.r[1]) / std::sqrt(2.) : pair.r[1];
+        total -= (Dim + 2) * V * pair.F * e * e * t * t / (pair.distance * pair.distance);
+    }
+    return total;
+}
+
 // exp(-16 pi^2 nu t) for the Taylor-Green vortices, exp(-8 pi^2 nu t) for the ABC flow; a coarse lattice gets
 // the rate to some 10 %.
 TEST_P(EveryScheme, LosesKineticEnergyAtTheViscousRate) {
@@ -258,6 +282,9 @@ TEST_P(EveryScheme, LosesKineticEnergyAtTheViscousRate) {
         constexpr int Dim = dimension;
         Simulation<Dim> scene = flowing_scene<Dim>(scheme, variant.given, Dim == 2 ? 28 : 14);
         scene.kinematic_viscosity = 0.02;
+        const bool uneven =
+            has_key(scheme, "viscosity") && scene.settings.word("viscosity") == "monaghan_cleary";
+        const double expected = uneven ? lattice_viscosity(scene) : 1;
         scheme.assemble(scene);
         const double start = kinetic_energy(scene);
         double before = start;
@@ -268,7 +295,7 @@ TEST_P(EveryScheme, LosesKineticEnergyAtTheViscousRate) {
             before = energy;
         }
         const double exact = (Dim == 2 ? 16 : 8) * pi * pi * scene.kinematic_viscosity * scene.time;
-        EXPECT_NEAR(std::log(start / before) / exact, 1, 0.2);
+        EXPECT_NEAR(std::log(start / before) / exact, expected, 0.2);
     });
 }
 
@@ -390,12 +417,134 @@ const std::array inventories{
         {"pressure_over_squared_density", "specific_volume", "acceleration", "density_rate", "step_start",
          "predictor_displacement"},
         {4 + 8 * 18, 4 + 8 * 24}},
+    Inventory{"wcsph",
+              {{"integrator", "verlet"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 1},
+               {"continuity", 1},
+               {"verlet", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density", "previous_velocity", "previous_density"},
+              {"pressure_over_squared_density", "specific_volume", "acceleration", "density_rate"},
+              {4 + 8 * 14, 4 + 8 * 18}},
+    Inventory{"wcsph",
+              {{"continuity", "sigma_1"}, {"viscosity", "monaghan_cleary"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 1},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"pressure_over_squared_density", "specific_volume", "acceleration", "density_rate"},
+              {4 + 8 * 11, 4 + 8 * 14}},
+    Inventory{"wcsph",
+              {{"pressure_force", "sigma_1"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 1},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"specific_volume", "acceleration", "density_rate"},
+              {4 + 8 * 10, 4 + 8 * 13}},
+    Inventory{"wcsph",
+              {{"pressure_force", "plain"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 1},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"specific_volume", "acceleration", "density_rate"},
+              {4 + 8 * 10, 4 + 8 * 13}},
+    Inventory{"wcsph",
+              {{"pressure_force", "difference"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 1},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"specific_volume", "acceleration", "density_rate"},
+              {4 + 8 * 10, 4 + 8 * 13}},
+    Inventory{"wcsph",
+              {{"continuity", "renormalised"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 2},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"pressure_over_squared_density", "specific_volume", "acceleration", "density_rate",
+               "renormalisation"},
+              {4 + 8 * 14, 4 + 8 * 20}},
+    Inventory{"wcsph",
+              {{"pressure_force", "renormalised_coherent"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 2},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"specific_volume", "acceleration", "density_rate", "renormalisation"},
+              {4 + 8 * 13, 4 + 8 * 19}},
+    Inventory{"wcsph",
+              {{"pressure_force", "renormalised"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 2},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"specific_volume", "acceleration", "density_rate", "renormalisation"},
+              {4 + 8 * 13, 4 + 8 * 19}},
+    Inventory{"wcsph",
+              {{"pressure_force", "taylor"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 2},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"specific_volume", "acceleration", "density_rate", "renormalisation"},
+              {4 + 8 * 13, 4 + 8 * 19}},
+    Inventory{"wcsph",
+              {{"continuity", "renormalised"}, {"pressure_force", "hybrid_taylor"}},
+              {{"time_step", 0},
+               {"neighbours", 0},
+               {"momentum", 3},
+               {"continuity", 1},
+               {"drift", 0},
+               {"equation_of_state", 0}},
+              {"position", "velocity", "pressure", "density"},
+              {"specific_volume", "acceleration", "density_rate", "renormalisation", "lowest_eigenvalue"},
+              {4 + 8 * 14, 4 + 8 * 20}},
+    Inventory{
+        "wcsph",
+        {{"integrator", "predictor_corrector"}, {"pressure_force", "taylor"}},
+        {{"time_step", 0}, {"neighbours", 0}, {"predictor", 3}, {"corrector", 3}, {"equation_of_state", 0}},
+        {"position", "velocity", "pressure", "density"},
+        {"specific_volume", "acceleration", "density_rate", "renormalisation", "step_start",
+         "predictor_displacement"},
+        {4 + 8 * 20, 4 + 8 * 29}},
 };
 
 TEST(Scene, CarriesOnlyWhatItsSchemeNeeds) {
     for (const Inventory& inventory : inventories) {
-        SCOPED_TRACE(std::string(inventory.scheme) + " " +
-                     (inventory.given.empty() ? "" : inventory.given.begin()->second));
+        std::string words(inventory.scheme);
+        for (const auto& [key, word] : inventory.given) {
+            words += " " + word;
+        }
+        SCOPED_TRACE(words);
         in_2d_and_3d([&](auto dimension) {
             constexpr int Dim = dimension;
             const Scheme& scheme = schemes::find(inventory.scheme);
@@ -461,27 +610,29 @@ TEST(Scene, RefusesAFieldOfAnotherShape) {
 // Properties of single schemes.
 
 TEST(Wcsph, ConservesMomentum) {
-    for (const std::string integrator : {"explicit", "predictor_corrector"}) {
+    const std::vector<Assignments> antisymmetric{
+        {{"integrator", "explicit"}},
+        {{"integrator", "predictor_corrector"}},
+        {{"integrator", "verlet"}, {"restart_interval", "7"}},
+        {{"viscosity", "monaghan_cleary"}},
+        {{"continuity", "sigma_1"}, {"pressure_force", "sigma_1"}},
+        {{"continuity", "renormalised"}, {"pressure_force", "renormalised_coherent"}}};
+    for (const Assignments& given : antisymmetric) {
+        SCOPED_TRACE(given.begin()->second);
         in_2d_and_3d([&](auto dimension) {
             constexpr int Dim = dimension;
             const Scheme& scheme = schemes::find("wcsph");
-            Simulation<Dim> scene =
-                flowing_scene<Dim>(scheme, {{"integrator", integrator}}, Dim == 2 ? 16 : 9, 0.2);
+            Simulation<Dim> scene = flowing_scene<Dim>(scheme, given, Dim == 2 ? 16 : 9, 0.2);
             scene.particles.velocity[0][3] += 0.5;
             scheme.assemble(scene);
-            const auto momentum = [&](int d) {
-                return deterministic_sum(static_cast<int>(scene.particles.size()),
-                                         [&](int i) { return scene.particles.velocity[d][i]; });
-            };
-            std::array<double, Dim> start;
-            for (int d = 0; d < Dim; ++d) {
-                start[d] = momentum(d);
-            }
+            const std::array<double, Dim> start = momentum(scene);
+            EXPECT_GT(std::abs(start[0]), 0.1 * scene.particle_mass);
             for (int step = 0; step < 20; ++step) {
                 advance(scene);
             }
+            const std::array<double, Dim> end = momentum(scene);
             for (int d = 0; d < Dim; ++d) {
-                EXPECT_NEAR(momentum(d), start[d], 1e-14 * static_cast<double>(scene.particles.size()));
+                EXPECT_NEAR(end[d], start[d], 1e-14); // of a mass of 1 at speeds of 1
             }
         });
     }

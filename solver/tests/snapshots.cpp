@@ -212,6 +212,9 @@ TEST_F(Snapshots, AResumedRunGivesTheSameBits) {
 
 TEST_F(Snapshots, AResumedRunGivesTheSameBitsWithOtherSettings) {
     expect_resumes<2>("wcsph", 16, {{"integrator", "predictor_corrector"}, {"viscous_limit", "10"}}, path);
+    expect_resumes<2>("wcsph", 16, {{"integrator", "verlet"}, {"restart_interval", "7"}}, path);
+    expect_resumes<3>("wcsph", 10, {{"continuity", "renormalised"}, {"pressure_force", "hybrid_taylor"}},
+                      path);
     expect_resumes<2>("isph_dfs", 16, {{"laplacian", "schwaiger"}, {"shift_correction", "none"}}, path);
     expect_resumes<2>("isph_df", 16,
                       {{"gradient", "plain"}, {"preconditioner", "jacobi"}, {"time_step", "0.002"}}, path);
