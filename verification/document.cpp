@@ -134,6 +134,19 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
             {"samples", samples}};
 }
 
+Tree budget_tree(const Budget& budget) {
+    const auto if_any = [](const std::optional<double>& value) {
+        return value ? finite_or_null(*value) : Tree(nullptr);
+    };
+    return {{"momentum_drift", finite_or_null(budget.momentum_drift)},
+            {"kinetic_energy_start", finite_or_null(budget.kinetic_energy_start)},
+            {"kinetic_energy_end", finite_or_null(budget.kinetic_energy_end)},
+            {"elastic_energy_start", if_any(budget.elastic_energy_start)},
+            {"elastic_energy_end", if_any(budget.elastic_energy_end)},
+            {"energy_drift", finite_or_null(budget.energy_drift)},
+            {"internal_torque", if_any(budget.internal_torque)}};
+}
+
 Tree run_tree(const LadderResult& result, const RunRecord& run) {
     Tree stages = Tree::array();
     for (const auto& stage : run.stages) {
@@ -163,6 +176,7 @@ Tree run_tree(const LadderResult& result, const RunRecord& run) {
             {"energy_error", finite_or_null(run.energy_error)},
             {"maximum_speed_error", finite_or_null(run.maximum_speed_error)},
             {"minimum_spacing", finite_or_null(run.minimum_spacing)},
+            {"budget", budget_tree(run.budget)},
             {"stages", stages},
             {"fields", fields},
             {"settings", settings}};

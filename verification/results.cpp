@@ -394,7 +394,7 @@ struct Members {
     std::string_view names;
 };
 
-constexpr std::array<Members, 33> members{{
+constexpr std::array<Members, 34> members{{
     {"", "a text", "command"},
     {"", "an object", "provenance"},
     {"", "a list", "cases studies runs fronts"},
@@ -424,7 +424,10 @@ constexpr std::array<Members, 33> members{{
      "n seed? end_time? setup_seconds? bytes_per_particle? energy_error? minimum_spacing?"},
     {"runs[]", "a boolean", "survived"},
     {"runs[]", "a list", "stages fields"},
-    {"runs[]", "an object", "settings?"},
+    {"runs[]", "an object", "settings? budget?"},
+    {"runs[].budget", "a number",
+     "momentum_drift? kinetic_energy_start? kinetic_energy_end? elastic_energy_start? elastic_energy_end? "
+     "energy_drift? internal_torque?"},
     {"fronts[]", "a text", "group field norm cost"},
     {"fronts[]", "a list", "curves rows"},
     {"fronts[].curves[]", "a text", "scheme"},

@@ -44,6 +44,44 @@ private:
     int allowed_;
 };
 
+/// Momentum and energies at one time.
+template <int Dim>
+struct Stock {
+    explicit Stock(const solver::Simulation<Dim>& simulation)
+        : momentum(solver::momentum(simulation)), kinetic(kinetic_energy(simulation)) {
+        if (simulation.elastic_energy) {
+            elastic = simulation.elastic_energy(simulation);
+        }
+    }
+
+    std::array<double, Dim> momentum;
+    double kinetic;
+    std::optional<double> elastic;
+};
+
+template <int Dim>
+Budget budget_since(const Stock<Dim>& start, const solver::Simulation<Dim>& simulation) {
+    const Stock<Dim> end(simulation);
+    double squared = 0;
+    for (int d = 0; d < Dim; ++d) {
+        squared += (end.momentum[d] - start.momentum[d]) * (end.momentum[d] - start.momentum[d]);
+    }
+    const double mass = simulation.particle_mass * static_cast<double>(simulation.particles.size());
+    Budget budget{.momentum_drift = std::sqrt(squared) / (mass * simulation.reference_speed),
+                  .kinetic_energy_start = start.kinetic,
+                  .kinetic_energy_end = end.kinetic,
+                  .elastic_energy_start = start.elastic,
+                  .elastic_energy_end = end.elastic,
+                  .energy_drift =
+                      (end.kinetic + end.elastic.value_or(0) - start.kinetic - start.elastic.value_or(0)) /
+                      start.kinetic,
+                  .internal_torque = {}};
+    if (simulation.internal_torque) {
+        budget.internal_torque = simulation.internal_torque(simulation) / start.kinetic;
+    }
+    return budget;
+}
+
 template <int Dim>
 void compare(const SceneRecord& scene, const solver::Simulation<Dim>& simulation, RunRecord& record) {
     const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
@@ -177,6 +215,7 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     record.particles = simulation.particles.size();
     record.minimum_spacing = std::numeric_limits<double>::infinity();
     std::vector<double> time_steps;
+    const Stock<Dim> start(simulation);
     record.survived = true;
     while (record.survived && simulation.time < simulation.end_time) {
         const auto step = WallClock::now();
@@ -201,6 +240,7 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     record.time_step = time_steps.empty() ? simulation.time_step : median(time_steps);
     record.prescribed_time_step = scene.scheme_settings.number("time_step");
     record.work = simulation.work;
+    record.budget = budget_since(start, simulation);
     compare(scene, simulation, record);
     describe(simulation, record);
     for (const solver::Settings* settings : {&scene.case_settings, &scene.scheme_settings}) {

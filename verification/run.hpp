@@ -4,6 +4,7 @@
 #include "sphvv/verification/scene.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,22 @@ namespace sphvv::verification {
 struct FieldError {
     std::string field;
     Norms norms;
+};
+
+/// What a run kept and lost of what an isolated fluid keeps, from its start (for a resumed run, from where it
+/// was resumed) to the time reached. Energies in J (per metre of depth in 2-D).
+struct Budget {
+    double momentum_drift = 0; ///< |P(t) - P(0)| / (M U), U the largest speed that the scene expects
+    double kinetic_energy_start = 0;
+    double kinetic_energy_end = 0;
+    std::optional<double> elastic_energy_start; ///< of a compressible scheme
+    std::optional<double> elastic_energy_end;
+    /// (E(t) - E(0)) / E_kin(0), E kinetic and, where there is one, elastic energy: what viscosity took, and
+    /// what the scheme gained or lost
+    double energy_drift = 0;
+    /// |1/2 sum_ij r_ij x f_ij| / E_kin(0) at the time reached: the rate at which the forces between
+    /// particles change angular momentum, where the scheme tells
+    std::optional<double> internal_torque;
 };
 
 /// What one simulation left behind, apart from its particles.
@@ -33,6 +50,7 @@ struct RunRecord {
     double maximum_speed_error = 0;  ///< max|u| / max|u_exact| - 1 over the domain, at the time reached
     double energy_error = 0;         ///< kinetic energy over the exact one, minus 1, at the time reached
     double minimum_spacing = 0;      ///< smallest pair distance / dx over the whole run
+    Budget budget;
 
     double setup_seconds = 0;
     double seconds = 0;        ///< stepping wall time, median over the repeats

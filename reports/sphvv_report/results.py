@@ -34,10 +34,12 @@ STUDY = {"case": "text", "group": "text", "scheme": "text", "field": "text", "ti
          "expected?": EXPECTED, "fit": FIT, "samples": [SAMPLE]}
 STAGE = {"name": "text", "seconds": "number", "pair_evaluations": "number"}
 RUN_FIELD = {"name": "text", "bytes_per_particle": "number", "asked_by": "text"}
+BUDGET = {name + "?": "number" for name in ("momentum_drift", "kinetic_energy_start", "kinetic_energy_end", "elastic_energy_start",
+                                            "elastic_energy_end", "energy_drift", "internal_torque")}
 RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?": "number", "survived": "flag",
        "diagnosis?": "text", "end_time?": "number", "setup_seconds?": "number", "bytes_per_particle?": "number",
        "stages": [STAGE], "fields": [RUN_FIELD], "settings?": "object", "energy_error?": "number",
-       "minimum_spacing?": "number", "maximum_speed_error?": "number"}
+       "minimum_spacing?": "number", "maximum_speed_error?": "number", "budget?": BUDGET}
 CURVE = {"scheme": "text", "n": "numbers", "error": "numbers", "cost": "numbers"}
 FRONT_ROW = {"scheme": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
 FRONT = {"group": "text", "field": "text", "norm": "text", "cost": "text", "curves": [CURVE], "rows": [FRONT_ROW]}

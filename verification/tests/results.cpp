@@ -97,6 +97,8 @@ ResultTree complete() {
                      "settings": {"re": 100.0, "shifting": false}, "expected": {"low": 1.0, "source": "Xu 2009"},
                      "fit": {"norm": "l2", "order": 1.5, "ci95": 0.2, "verdict": "PASS", "order_l2": [null, 1.4, 1.6]}}],
         "runs": [{"case": "taylor_green", "group": "taylor_green re=100", "scheme": "wcsph", "n": 20, "survived": true,
+                  "budget": {"momentum_drift": 1e-16, "kinetic_energy_start": 0.25, "kinetic_energy_end": 0.125,
+                             "elastic_energy_start": null, "energy_drift": -0.5},
                   "stages": [{"name": "neighbours", "seconds": 0.1, "pair_evaluations": 10}], "fields": []}],
         "fronts": [{"group": "taylor_green re=100", "field": "velocity", "norm": "l2", "cost": "seconds",
                     "curves": [{"scheme": "wcsph", "n": [20, 40], "error": [0.1, 0.05], "cost": [1.0, 8.0]}],
@@ -146,6 +148,9 @@ TEST_F(Results, IsStoredAsTheFormatSays) {
     EXPECT_TRUE(std::isnan(samples.dataset<double>("l2").at(2)));
     EXPECT_TRUE(std::isnan(samples.dataset<double>("l2_spread").at(0)));
     EXPECT_EQ(root.group("runs").group("0000").group("fields").attribute<std::string>("_list"), "empty");
+    const Group budget = root.group("runs").group("0000").group("budget");
+    EXPECT_EQ(budget.attribute<double>("energy_drift"), -0.5);
+    EXPECT_FALSE(budget.has_attribute("elastic_energy_start"));
     // Numbers beside texts fit no column.
     EXPECT_EQ(root.group("cases").group("0000").group("parameters").attribute<std::string>("_list"), "items");
 }
@@ -517,6 +522,9 @@ TEST_F(Results, AWrongMemberIsNamed) {
                     {"studies[0].expected.low is not a number"});
     expect_mentions(fault_after("/studies/0/samples/0/survived", 1, path),
                     {"samples[0].survived is not a boolean"});
+    expect_mentions(fault_after("/runs/0/budget", 1, path), {"runs[0].budget is not an object"});
+    expect_mentions(fault_after("/runs/0/budget/energy_drift", "0", path),
+                    {"runs[0].budget.energy_drift is not a number"});
     expect_mentions(fault_after("/studies/0/fit/verdict", "GOOD", path), {"studies[0].fit.verdict", "GOOD"});
     expect_mentions(fault_after("/studies/0/fit/verdict", nullptr, path), {"studies[0].fit.verdict"});
     expect_mentions(fault_after("/studies/0/fit/order_l2", {1.0, 2.0}, path),
@@ -530,6 +538,8 @@ TEST_F(Results, WhatMayBeMissingMay) {
     for (const auto& [pointer, name] :
          std::vector<std::array<std::string, 2>>{{"/provenance", "threads"},
                                                  {"/cases/0", "parameters"},
+                                                 {"/runs/0", "budget"},
+                                                 {"/runs/0/budget", "momentum_drift"},
                                                  {"/studies/0", "expected"},
                                                  {"/studies/0/fit", "order_l2"}}) {
         ResultTree tree = complete();

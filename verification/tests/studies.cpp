@@ -360,6 +360,57 @@ TEST(Runs, DifferentSeedsDifferAndTheSameSeedRepeats) {
     EXPECT_NE(first, run_scene(scene).errors[0].norms.l2);
 }
 
+// 2-D Taylor-Green vortices carry no momentum and lose energy to viscosity alone, 16 pi^2 nu t of it at
+// first.
+TEST(Runs, BudgetsOfMomentumEnergyAndTorque) {
+    const auto run = [](const char* of, const solver::Assignments& more) {
+        solver::Assignments given{{"end_time", "0.05"}, {"arrangement", "jittered"}, {"re", "1000"}};
+        given.insert(more.begin(), more.end());
+        return run_scene(resolve_scene(cases::find("taylor_green"), scheme(of), given, 20));
+    };
+    const RunRecord variational = run("wcsph", {{"integrator", "predictor_corrector"}});
+    const Budget& budget = variational.budget;
+    EXPECT_LT(budget.momentum_drift, 1e-15);
+    ASSERT_TRUE(budget.elastic_energy_start && budget.elastic_energy_end && budget.internal_torque);
+    EXPECT_NEAR(budget.kinetic_energy_start, 250, 5); // 1000 kg/m3 at a mean square of (1 m/s)^2/2
+    EXPECT_DOUBLE_EQ(budget.energy_drift, (budget.kinetic_energy_end + *budget.elastic_energy_end -
+                                           budget.kinetic_energy_start - *budget.elastic_energy_start) /
+                                              budget.kinetic_energy_start);
+    // The viscous loss cannot exceed some times that of the smooth flow; disorder adds to it.
+    const double smooth = 16 * 9.87 * 1e-3 * 0.05;
+    EXPECT_LT(budget.energy_drift, -0.5 * smooth);
+    EXPECT_GT(budget.energy_drift, -10 * smooth);
+    EXPECT_GT(*budget.elastic_energy_end - *budget.elastic_energy_start, 0) << "disorder makes sound";
+
+    const RunRecord other = run("wcsph", {{"pressure_force", "difference"}});
+    EXPECT_GT(other.budget.momentum_drift, 1e-8);
+
+    const RunRecord projected = run("isph_dfs", {});
+    EXPECT_FALSE(projected.budget.elastic_energy_start || projected.budget.internal_torque);
+    EXPECT_DOUBLE_EQ(projected.budget.energy_drift,
+                     projected.budget.kinetic_energy_end / projected.budget.kinetic_energy_start - 1);
+}
+
+TEST(Runs, BudgetsStandInTheDocument) {
+    LadderResult result = result_of(judged(synthetic_runs("isph_dfs", ladder, [](double h) { return h; })));
+    RunRecord run;
+    run.scheme = "isph_dfs";
+    run.budget = {.momentum_drift = 0.125,
+                  .kinetic_energy_start = 4,
+                  .kinetic_energy_end = 3,
+                  .elastic_energy_start = {},
+                  .elastic_energy_end = 2,
+                  .energy_drift = std::nan(""),
+                  .internal_torque = 0.5};
+    result.runs.push_back(run);
+    const LadderResult results[] = {result};
+    const auto document = result_document("sphvv verify", current_provenance(), 1, results);
+    EXPECT_EQ(
+        document["runs"][0]["budget"].dump(),
+        R"({"momentum_drift":0.125,"kinetic_energy_start":4.0,"kinetic_energy_end":3.0,)"
+        R"("elastic_energy_start":null,"elastic_energy_end":2.0,"energy_drift":null,"internal_torque":0.5})");
+}
+
 TEST(Runs, ALostArrangementEndsTheRunWithItsDiagnosis) {
     const SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_df"), {}, 40);
     const RunRecord run = run_scene(scene);
