@@ -10,6 +10,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 
 namespace sphvv::solver {
 namespace {
@@ -649,6 +650,34 @@ TEST(Wcsph, StartsWithTheDensityOfItsPressure) {
         EXPECT_NEAR(pressure[0][i], given[i] + 2, 1e-13);
         EXPECT_NEAR(100. / 7 * (std::pow(density[0][i], 7) - 1), given[i], 1e-13);
     }
+}
+
+// The threshold of Oger 2007, lowest eigenvalue of L^-1 below 0.97, tells disorder from a free surface only
+// where the quadrature of L^-1 is that good: a box without any surface is all surface at h/dx = 1.3, so that
+// the hybrid form is the non-coherent one, and has none at h/dx = 3.
+TEST(Wcsph, TakesDisorderForAFreeSurfaceWhereTheSupportIsSmall) {
+    const Scheme& scheme = schemes::find("wcsph");
+    const auto after_a_step = [&](const char* pressure_force, const char* h_over_dx) {
+        auto scene = std::make_unique<Simulation<2>>(flowing_scene<2>(
+            scheme, {{"pressure_force", pressure_force}, {"h_over_dx", h_over_dx}}, 20, 0.1));
+        scheme.assemble(*scene);
+        advance(*scene);
+        return scene;
+    };
+    const auto below = [](const Simulation<2>& scene) {
+        const std::vector<double>& eigenvalue = scene.particles.find("lowest_eigenvalue")->components[0];
+        return static_cast<double>(std::ranges::count_if(eigenvalue, [](double e) { return e < 0.97; })) /
+               static_cast<double>(eigenvalue.size());
+    };
+    const auto same_velocity = [&](const char* form, const char* h_over_dx) {
+        return after_a_step("hybrid_taylor", h_over_dx)->particles.velocity.components ==
+               after_a_step(form, h_over_dx)->particles.velocity.components;
+    };
+    EXPECT_GT(below(*after_a_step("hybrid_taylor", "1.3")), 0.8);
+    EXPECT_TRUE(same_velocity("renormalised", "1.3"));
+    EXPECT_EQ(below(*after_a_step("hybrid_taylor", "3")), 0);
+    EXPECT_TRUE(same_velocity("taylor", "3"));
+    EXPECT_FALSE(same_velocity("renormalised", "3"));
 }
 
 TEST(IsphDf, MovesParticlesByTheMeanOfOldAndNewVelocity) {
