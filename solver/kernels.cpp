@@ -6,12 +6,16 @@
 
 namespace sphvv::solver {
 
+double Kernel::value_scale(int dim, double h) const {
+    return normalisation[dim] / std::pow(h, dim);
+}
+
 double Kernel::slope_scale(int dim, double h) const {
     return normalisation[dim] / std::pow(h, dim + 2);
 }
 
 double Kernel::value(int dim, double r, double h) const {
-    return normalisation[dim] / std::pow(h, dim) * f(r / h);
+    return value_scale(dim, h) * f(r / h);
 }
 
 double Kernel::slope(int dim, double r, double h) const {

@@ -27,17 +27,21 @@ struct Kernel {
     /// slope[k] = scale f'(q)/q with q = sqrt(squared_distance[k])/h; finite at r = 0 (0 where f'(q)/q has no
     /// limit) and zero outside the support.
     void (*slopes)(std::span<const double> squared_distance, double h, double scale, double* slope);
+    /// value[k] = scale f(q) with q = sqrt(squared_distance[k])/h.
+    void (*values)(std::span<const double> squared_distance, double h, double scale, double* value);
 
     /// W(r) in `dim` dimensions, 1/m^dim.
     double value(int dim, double r, double h) const;
     /// F(r) = W'(r)/r, so that the gradient of W(r_ij) with respect to r_i is F r_ij; 1/m^(dim+2).
     double slope(int dim, double r, double h) const;
+    /// The factor in front of f(q) in W: C_dim / h^dim.
+    double value_scale(int dim, double h) const;
     /// The factor in front of f'(q)/q in F: C_dim / h^(dim+2).
     double slope_scale(int dim, double h) const;
 };
 
-/// Makes a Kernel's batch function from a type with static members f, derivative and derivative_over_q. The
-/// loop has no branch and no call left after inlining, so that it vectorises.
+/// Makes a Kernel's batch functions from a type with static members f, derivative and derivative_over_q. The
+/// loops have no branch and no call left after inlining (but for the Gaussian's f), so that they vectorise.
 template <class Profile>
 void kernel_slopes(std::span<const double> squared_distance, double h, double scale, double* slope) {
     const double inverse_h = 1 / h;
@@ -46,6 +50,17 @@ void kernel_slopes(std::span<const double> squared_distance, double h, double sc
 #pragma omp simd
     for (std::size_t k = 0; k < count; ++k) {
         slope[k] = scale * Profile::derivative_over_q(__builtin_sqrt(r2[k]) * inverse_h);
+    }
+}
+
+template <class Profile>
+void kernel_values(std::span<const double> squared_distance, double h, double scale, double* value) {
+    const double inverse_h = 1 / h;
+    const std::size_t count = squared_distance.size();
+    const double* r2 = squared_distance.data();
+#pragma omp simd
+    for (std::size_t k = 0; k < count; ++k) {
+        value[k] = scale * Profile::f(__builtin_sqrt(r2[k]) * inverse_h);
     }
 }
 

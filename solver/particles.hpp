@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <deque>
 #include <span>
@@ -25,6 +27,36 @@ struct Field {
     const double* operator[](int component) const { return components[component].data(); }
     std::size_t bytes_per_particle() const { return components.size() * sizeof(double); }
 };
+
+/// target += scale * increment, component by component.
+template <int Components>
+void add_scaled(Field& target, double scale, const Field& increment) {
+    const int count = static_cast<int>(target.components[0].size());
+    for (int c = 0; c < Components; ++c) {
+        double* to = target[c];
+        const double* from = increment[c];
+#pragma omp parallel for simd schedule(static)
+        for (int i = 0; i < count; ++i) {
+            to[i] += scale * from[i];
+        }
+    }
+}
+
+/// Largest Euclidean norm of a vector field; 0 where every component is not a number.
+template <int Dim>
+double largest_norm(const Field& field) {
+    const int count = static_cast<int>(field.components[0].size());
+    double squared_maximum = 0;
+#pragma omp parallel for schedule(static) reduction(max : squared_maximum)
+    for (int i = 0; i < count; ++i) {
+        double squared = 0;
+        for (int d = 0; d < Dim; ++d) {
+            squared += field[d][i] * field[d][i];
+        }
+        squared_maximum = std::max(squared_maximum, squared);
+    }
+    return std::sqrt(squared_maximum);
+}
 
 /// The particles of a scene as a structure of arrays. It starts with position and velocity only; every other
 /// field exists because a stage asked for it.

@@ -39,6 +39,7 @@ const Kernel& cubic_spline() {
         .f = Profile::f,
         .derivative = Profile::derivative,
         .slopes = kernel_slopes<Profile>,
+        .values = kernel_values<Profile>,
     };
     return kernel;
 }

@@ -47,6 +47,7 @@ const Kernel& gaussian() {
         .f = Profile::f,
         .derivative = Profile::derivative,
         .slopes = kernel_slopes<Profile>,
+        .values = kernel_values<Profile>,
     };
     return kernel;
 }

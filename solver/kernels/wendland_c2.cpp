@@ -35,6 +35,7 @@ const Kernel& wendland_c2() {
         .f = Profile::f,
         .derivative = Profile::derivative,
         .slopes = kernel_slopes<Profile>,
+        .values = kernel_values<Profile>,
     };
     return kernel;
 }

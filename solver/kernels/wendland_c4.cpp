@@ -40,6 +40,7 @@ const Kernel& wendland_c4() {
         .f = Profile::f,
         .derivative = Profile::derivative,
         .slopes = kernel_slopes<Profile>,
+        .values = kernel_values<Profile>,
     };
     return kernel;
 }

@@ -41,6 +41,7 @@ const Kernel& wendland_c6() {
         .f = Profile::f,
         .derivative = Profile::derivative,
         .slopes = kernel_slopes<Profile>,
+        .values = kernel_values<Profile>,
     };
     return kernel;
 }

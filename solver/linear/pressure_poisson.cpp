@@ -251,7 +251,7 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(pressure, size());
     remove_mean(source_.data(), size());
     LinearSolve result{0, 0, true, 0};
-    if (source_.norm() == 0) {
+    if (source_.norm() <= round_off_ * std::sqrt(size())) {
         std::fill(pressure, pressure + size(), 0.0);
         return result;
     }

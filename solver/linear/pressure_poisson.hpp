@@ -54,6 +54,10 @@ public:
     double* weights(int i) { return weights_.data() + neighbours_->row_start(i); }
     double& diagonal(int i) { return diagonal_[i]; }
     double& source(int i) { return source_[i]; }
+    /// A source whose root mean square about the mean is at most this is nothing but round-off, and its
+    /// solution is 0. No solver gets from a first guess of another size to a residual that is small against
+    /// round-off.
+    void set_round_off(double root_mean_square) { round_off_ = root_mean_square; }
 
     /// Solves for `pressure`, which holds the first guess.
     LinearSolve solve(double* pressure);
@@ -74,6 +78,7 @@ private:
     Eigen::VectorXd diagonal_;
     Eigen::VectorXd source_;
     std::unique_ptr<CoarseSpace> coarse_;
+    double round_off_ = 0;
 };
 
 } // namespace sphvv::solver

@@ -1,24 +1,20 @@
+#include "sphvv/solver/operators/gradient_sigma_2.hpp"
+
 #include "sphvv/solver/operators.hpp"
 
 namespace sphvv::solver::operators {
 namespace {
 
+struct MassField {
+    const double* rho;
+    const double* V;
+    Lanes operator()(const int* j) const { return gather(rho, j) * gather(V, j); }
+};
+
 struct Formula {
     template <int Dim>
     static Vector<Dim> at(const Row<Dim>& row, int i, const OperatorInput<Dim>& in) {
-        const double* A = in.field[0];
-        const double* rho = in.density;
-        Vector<Dim> total = Vector<Dim>::Zero();
-        for (int k = 0; k < row.count; ++k) {
-            const int j = row.index[k];
-            const double m = rho[j] * in.V[j];
-            const double pair = A[i] / (rho[i] * rho[i]) + A[j] / (rho[j] * rho[j]);
-            const double weight = rho[i] * m * pair * row.slope[k];
-            for (int d = 0; d < Dim; ++d) {
-                total[d] += weight * row.separation[d][k];
-            }
-        }
-        return total;
+        return gradient_sigma_2<Dim>(row, i, in.field[0], MassField{in.density, in.V}, in.density);
     }
 };
 

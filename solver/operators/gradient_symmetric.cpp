@@ -1,3 +1,5 @@
+#include "sphvv/solver/operators/gradient_symmetric.hpp"
+
 #include "sphvv/solver/operators.hpp"
 
 namespace sphvv::solver::operators {
@@ -6,16 +8,7 @@ namespace {
 struct Formula {
     template <int Dim>
     static Vector<Dim> at(const Row<Dim>& row, int i, const OperatorInput<Dim>& in) {
-        Vector<Dim> total = Vector<Dim>::Zero();
-        const double A_i = in.field[0][i];
-        for (int k = 0; k < row.count; ++k) {
-            const int j = row.index[k];
-            const double weight = in.V[j] * (A_i + in.field[0][j]) * row.slope[k];
-            for (int d = 0; d < Dim; ++d) {
-                total[d] += weight * row.separation[d][k];
-            }
-        }
-        return total;
+        return gradient_symmetric<Dim>(row, i, in.field[0], in.volume());
     }
 };
 

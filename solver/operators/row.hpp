@@ -29,6 +29,13 @@ struct VolumeField {
     Lanes operator()(const int* j) const { return gather(V, j); }
 };
 
+/// Particle j has the mass m (kg) and the density rho[j] (kg/m^dim), and so the volume m/rho[j] (m^dim).
+struct MassOverDensity {
+    double m;
+    const double* rho;
+    Lanes operator()(const int* j) const { return m / gather(rho, j); }
+};
+
 template <int Dim>
 Vector<Dim> lane_sums(const std::array<Lanes, Dim>& lanes) {
     Vector<Dim> result;

@@ -1,3 +1,5 @@
+#include "sphvv/solver/operators/summation_density.hpp"
+
 #include "sphvv/solver/operators.hpp"
 
 namespace sphvv::solver::operators {
@@ -6,15 +8,7 @@ namespace {
 struct Formula {
     template <int Dim>
     static double at(const Row<Dim>& row, int i, const OperatorInput<Dim>& in) {
-        double total = in.V[i] * in.kernel->f(0);
-        for (int k = 0; k < row.count; ++k) {
-            double r2 = 0;
-            for (int d = 0; d < Dim; ++d) {
-                r2 += row.separation[d][k] * row.separation[d][k];
-            }
-            total += in.V[row.index[k]] * in.kernel->f(std::sqrt(r2) / in.h);
-        }
-        return in.kernel->value(Dim, 0, in.h) / in.kernel->f(0) * total;
+        return summation_density<Dim>(row, *in.kernel, in.h, in.volume(), in.V[i]);
     }
 };
 

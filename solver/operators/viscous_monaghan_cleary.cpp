@@ -1,5 +1,6 @@
+#include "sphvv/solver/operators/viscous_monaghan_cleary.hpp"
+
 #include "sphvv/solver/operators.hpp"
-#include "sphvv/solver/operators/laplacian_morris.hpp"
 
 namespace sphvv::solver::operators {
 namespace {
@@ -7,25 +8,7 @@ namespace {
 struct Formula {
     template <int Dim>
     static Vector<Dim> at(const Row<Dim>& row, int i, const OperatorInput<Dim>& in) {
-        Vector<Dim> total = Vector<Dim>::Zero();
-        for (int k = 0; k < row.count; ++k) {
-            const int j = row.index[k];
-            double r2 = 0;
-            double along = 0;
-            for (int d = 0; d < Dim; ++d) {
-                const double r = row.separation[d][k];
-                r2 += r * r;
-                along += r * (in.field[d][i] - in.field[d][j]);
-            }
-            if (r2 == 0) {
-                continue; // a coincident pair has no direction
-            }
-            const double weight = 2 * (Dim + 2) * in.V[j] * row.slope[k] * along / r2;
-            for (int d = 0; d < Dim; ++d) {
-                total[d] += weight * row.separation[d][k];
-            }
-        }
-        return total;
+        return viscous_monaghan_cleary<Dim>(row, i, in.field, in.volume(), 0.0);
     }
 };
 

@@ -1,35 +1,21 @@
 #include "sphvv/solver/projection/projection.hpp"
 
-#include "sphvv/solver/linear/pressure_poisson.hpp"
 #include "sphvv/solver/operators/divergence_difference.hpp"
 #include "sphvv/solver/operators/gradient_difference.hpp"
+#include "sphvv/solver/operators/gradient_sigma_2.hpp"
+#include "sphvv/solver/operators/gradient_symmetric.hpp"
 #include "sphvv/solver/operators/laplacian_morris.hpp"
+#include "sphvv/solver/operators/laplacian_over_density.hpp"
 #include "sphvv/solver/operators/laplacian_schwaiger.hpp"
 #include "sphvv/solver/operators/renormalisation.hpp"
+#include "sphvv/solver/operators/summation_density.hpp"
+#include "sphvv/solver/operators/viscous_monaghan_cleary.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 namespace sphvv::solver::projection {
 namespace {
-
-/// Widening of the neighbour search by this share of the support, so that the list made at r* can follow the
-/// particles to r^{n+1}, which differs by (dt/2)(u^{n+1} - u^n), at most 0.1 h |u^{n+1} - u^n|/u_max.
-constexpr double search_skin = 0.03;
-
-/// What the stages of one step share.
-template <int Dim>
-struct Fields {
-    Field& pressure;
-    Field& velocity_next;   ///< u*, then u^{n+1}, while velocity still holds u^n
-    Field* renormalisation; ///< L_i at r*, row by row; none if nothing needs it
-    bool normalised;
-    bool schwaiger;
-    double eta_squared;
-    UniformVolume volume;
-    PressurePoisson<Dim> poisson;
-};
 
 template <int Dim>
 void write_matrix(Field& field, int i, const Matrix<Dim>& L) {
@@ -51,114 +37,266 @@ Matrix<Dim> read_matrix(const Field& field, int i) {
     return L;
 }
 
+Gradient gradient_of(const Settings& settings) {
+    const std::string& word = settings.word("gradient");
+    if (word == "normalised") {
+        return Gradient::normalised;
+    }
+    return word == "plain" ? Gradient::plain : Gradient::symmetric;
+}
+
+Viscosity viscosity_of(const Settings& settings) {
+    if (settings.word("viscosity") == "monaghan_cleary") {
+        return Viscosity::monaghan_cleary;
+    }
+    return settings.word("laplacian") == "schwaiger" ? Viscosity::schwaiger : Viscosity::morris;
+}
+
+template <int Dim>
+PressurePoisson<Dim> poisson_of(const Settings& settings) {
+    using Poisson = PressurePoisson<Dim>;
+    typename Poisson::Options options;
+    options.tolerance = settings.number("pressure_tolerance");
+    options.symmetric = settings.word("laplacian") == "morris";
+    options.preconditioner = settings.word("preconditioner") == "jacobi" ? Poisson::Preconditioner::jacobi
+                                                                         : Poisson::Preconditioner::two_level;
+    return Poisson(options);
+}
+
+/// Runs body(volume) with the volumes m/rho_j of the summation density or m/rho_0.
+template <int Dim, class Body>
+void with_volume(const Simulation<Dim>& s, const Projection<Dim>& p, const Body& body) {
+    if (p.density != nullptr) {
+        body(MassOverDensity{s.particle_mass, (*p.density)[0]});
+    } else {
+        body(p.volume);
+    }
+}
+
+/// L_i, or the identity where nothing needs it: at a constant density the one that the viscosity left.
+template <int Dim>
+Matrix<Dim> renormalisation_at(const Projection<Dim>& p, bool needed, int i, const Row<Dim>& /*row*/,
+                               const UniformVolume& /*volume*/) {
+    return needed ? read_matrix<Dim>(*p.renormalisation, i) : Matrix<Dim>(Matrix<Dim>::Identity());
+}
+
+/// The same at a summed density, formed anew.
+template <int Dim>
+Matrix<Dim> renormalisation_at(const Projection<Dim>& /*p*/, bool needed, int /*i*/, const Row<Dim>& row,
+                               const MassOverDensity& particles) {
+    return needed ? renormalisation<Dim>(row, particles) : Matrix<Dim>(Matrix<Dim>::Identity());
+}
+
+/// Sweeps for it.
+template <int Dim>
+int renormalisation_sweeps(const Projection<Dim>& p, bool needed) {
+    return needed && p.density != nullptr ? 1 : 0;
+}
+
+template <int Dim>
+Vector<Dim> viscous_term(const Projection<Dim>& p, int i, const Row<Dim>& row,
+                         const std::array<const double*, Dim>& u, const Matrix<Dim>& L) {
+    switch (p.viscosity) {
+    case Viscosity::schwaiger:
+        return laplacian_schwaiger<Dim>(row, i, u, p.volume, L);
+    case Viscosity::monaghan_cleary:
+        return viscous_monaghan_cleary<Dim>(row, i, u, p.volume, p.eta_squared);
+    case Viscosity::morris:
+        break;
+    }
+    return laplacian_morris<Dim>(row, i, u, p.volume, p.eta_squared);
+}
+
+/// Div u. The symmetric gradient goes with the difference divergence, its adjoint.
+template <int Dim, class Volume>
+double divergence(const Projection<Dim>& p, int i, const Row<Dim>& row,
+                  const std::array<const double*, Dim>& u, const Volume& volume, const Matrix<Dim>& L) {
+    return p.gradient == Gradient::normalised
+               ? (vector_gradient_difference<Dim>(row, i, u, volume) * L).trace()
+               : divergence_difference<Dim>(row, i, u, volume);
+}
+
+template <int Dim>
+Vector<Dim> symmetric_gradient(int i, const Row<Dim>& row, const double* A, const UniformVolume& volume) {
+    return gradient_symmetric<Dim>(row, i, A, volume);
+}
+
+template <int Dim>
+Vector<Dim> symmetric_gradient(int i, const Row<Dim>& row, const double* A,
+                               const MassOverDensity& particles) {
+    return gradient_sigma_2<Dim>(row, i, A, UniformVolume{particles.m}, particles.rho);
+}
+
+template <int Dim, class Volume>
+Vector<Dim> pressure_gradient(const Projection<Dim>& p, int i, const Row<Dim>& row, const double* pressure,
+                              const Volume& volume) {
+    if (p.gradient == Gradient::symmetric) {
+        return symmetric_gradient<Dim>(i, row, pressure, volume);
+    }
+    const Vector<Dim> gradient = gradient_difference<Dim>(row, i, pressure, volume);
+    if (p.gradient == Gradient::plain) {
+        return gradient;
+    }
+    return renormalisation_at<Dim>(p, true, i, row, volume) * gradient;
+}
+
+/// Row i of -Laplacian.
+template <int Dim>
+double write_weights(Projection<Dim>& p, int i, const Row<Dim>& row, const UniformVolume& volume,
+                     const Matrix<Dim>& L) {
+    return p.schwaiger ? laplacian_schwaiger_weights<Dim>(row, volume, L, p.poisson.weights(i))
+                       : laplacian_morris_weights<Dim>(row, volume, p.eta_squared, p.poisson.weights(i));
+}
+
+/// Row i of -div(grad/rho).
+template <int Dim>
+double write_weights(Projection<Dim>& p, int i, const Row<Dim>& row, const MassOverDensity& particles,
+                     const Matrix<Dim>& L) {
+    return p.schwaiger
+               ? laplacian_over_density_schwaiger_weights<Dim>(row, i, particles, L, p.poisson.weights(i))
+               : laplacian_over_density_morris_weights<Dim>(row, i, particles, p.eta_squared,
+                                                            p.poisson.weights(i));
+}
+
+template <int Dim>
+int weight_sweeps(const Projection<Dim>& p) {
+    return p.schwaiger ? 2 : 1;
+}
+
+} // namespace
+
+std::vector<Key> keys(const Defaults& defaults) {
+    return joined(
+        common_keys(defaults.kernel, defaults.h_over_dx),
+        {Key::word("laplacian", "morris", {"morris", "schwaiger"}, "Laplacian of the pressure: LM or LS"),
+         Key::word("viscosity", "laplacian", {"laplacian", "monaghan_cleary"},
+                   "the same Laplacian, or Monaghan-Cleary's form along the line of the pair"),
+         Key::word("gradient", std::string(defaults.gradient), {"normalised", "plain", "symmetric"},
+                   "gradient and divergence: renormalised G-, G-, or G+ with its adjoint, the divergence of "
+                   "G-"),
+         Key::number("eta_over_h", 0, 0, 1, "1", "eta/h in the Morris Laplacian and in Monaghan-Cleary's"),
+         Key::number("advective_limit", defaults.advective_limit, 1e-4, 2, "1", "dt <= this h/u_max"),
+         Key::number("viscous_limit", defaults.viscous_limit, 1e-4, 2, "1", "dt <= this h^2/nu"),
+         Key::number("pressure_tolerance", 1e-5, 1e-14, 0.1, "1", "relative residual of the pressure solve"),
+         Key::word("preconditioner", "two_level", {"two_level", "jacobi"}, "of the pressure solve")});
+}
+
+template <int Dim>
+std::shared_ptr<Projection<Dim>> make_projection(Simulation<Dim>& s, Density density) {
+    Particles<Dim>& particles = s.particles;
+    const Settings& settings = s.settings;
+    const Gradient gradient = gradient_of(settings);
+    const Viscosity viscosity = viscosity_of(settings);
+    const bool schwaiger = settings.word("laplacian") == "schwaiger";
+    const double eta = settings.number("eta_over_h") * s.smoothing_length;
+    const bool summed = density == Density::summed;
+    const bool keeps_L = !summed && (gradient == Gradient::normalised || schwaiger);
+    return std::make_shared<Projection<Dim>>(Projection<Dim>{
+        particles.field("pressure", 1, Lifetime::state, "pressure_poisson"),
+        particles.field("velocity_next", Dim, Lifetime::scratch, "viscosity"),
+        keeps_L ? &particles.field("renormalisation", Dim * Dim, Lifetime::scratch, "viscosity") : nullptr,
+        summed ? &particles.field("particle_density", 1, Lifetime::scratch, "density") : nullptr, gradient,
+        viscosity, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density},
+        poisson_of<Dim>(settings)});
+}
+
 template <int Dim>
 void choose_time_step(Simulation<Dim>& s) {
-    const double fixed = s.settings.number("time_step");
+    const Settings& settings = s.settings;
     const double h = s.smoothing_length;
-    // Xu 2009 §3.4: 0.2 h/u_max and 0.2 h^2/nu. The thesis used one common step for all methods at a Reynolds
-    // number, so u_max is the largest speed that the scene expects; a flow that exceeds it shortens the step.
-    // (With the current speed of a decaying flow the last steps grow to 0.2 h/u_max(t): at Re = 100, 20^2,
-    // that triples the velocity error.)
-    const double u_max = std::max(s.reference_speed, maximum_speed(s));
-    const double limit = fixed > 0
-                             ? fixed
-                             : std::min(s.settings.number("advective_limit") * h / u_max,
-                                        s.settings.number("viscous_limit") * h * h / s.kinematic_viscosity);
+    double limit = settings.number("time_step");
+    if (limit == 0) {
+        // Xu's thesis used one common step for all methods at a Reynolds number, so u_max is the largest
+        // speed that the scene expects; a flow that exceeds it shortens the step. (With the current speed of
+        // a decaying flow the last steps grow to 0.2 h/u_max(t): at Re = 100, 20^2, that triples the velocity
+        // error.)
+        const double u_max = std::max(s.reference_speed, maximum_speed(s));
+        limit = std::min(settings.number("advective_limit") * h / u_max,
+                         settings.number("viscous_limit") * h * h / s.kinematic_viscosity);
+        if (settings.has("force_limit") && s.maximum_acceleration > 0) {
+            limit = std::min(limit, settings.number("force_limit") * std::sqrt(h / s.maximum_acceleration));
+        }
+    }
     s.time_step = even_step(s, limit);
 }
 
 template <int Dim>
 void drift(Simulation<Dim>& s) {
-    const int count = static_cast<int>(s.particles.size());
-    for (int d = 0; d < Dim; ++d) {
-        double* x = s.particles.position[d];
-        const double* u = s.particles.velocity[d];
-#pragma omp parallel for simd schedule(static)
-        for (int i = 0; i < count; ++i) {
-            x[i] += s.time_step * u[i];
-        }
-    }
+    add_scaled<Dim>(s.particles.position, s.time_step, s.particles.velocity);
 }
 
-/// L_i and u* = u^n + dt nu Laplacian u^n.
 template <int Dim>
-void add_viscosity(Simulation<Dim>& s, Fields<Dim>& f) {
+void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
     const auto u = constant_arrays<Dim>(s.particles.velocity);
-    const auto next = arrays<Dim>(f.velocity_next);
-    const double dt_nu = s.time_step * s.kinematic_viscosity;
-    const bool needs_L = f.renormalisation != nullptr;
+    const auto next = arrays<Dim>(p.velocity_next);
+    const double dt_nu = dt * s.kinematic_viscosity;
+    const bool schwaiger = p.viscosity == Viscosity::schwaiger;
+    const bool needs_L = p.renormalisation != nullptr || schwaiger;
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         Vector<Dim> laplacian;
         if (needs_L) {
-            const Matrix<Dim> L = renormalisation<Dim>(row, f.volume);
-            write_matrix<Dim>(*f.renormalisation, i, L);
-            laplacian = f.schwaiger ? laplacian_schwaiger<Dim>(row, i, u, f.volume, L)
-                                    : laplacian_morris<Dim>(row, i, u, f.volume, f.eta_squared);
+            const Matrix<Dim> L = renormalisation<Dim>(row, p.volume);
+            if (p.renormalisation != nullptr) {
+                write_matrix<Dim>(*p.renormalisation, i, L);
+            }
+            laplacian = viscous_term<Dim>(p, i, row, u, L);
         } else {
-            laplacian = laplacian_morris<Dim>(row, i, u, f.volume, f.eta_squared);
+            laplacian = viscous_term<Dim>(p, i, row, u, Matrix<Dim>::Identity());
         }
         for (int d = 0; d < Dim; ++d) {
             next[d][i] = u[d][i] + dt_nu * laplacian[d];
         }
     });
-    s.count_sweeps((needs_L ? 1 : 0) + (f.schwaiger ? 3 : 1));
+    s.count_sweeps((needs_L ? 1 : 0) + (schwaiger ? 3 : 1));
 }
 
-/// sum_j w_ij (p_i - p_j) = -(rho/dt) div u*.
 template <int Dim>
-void solve_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
-    const auto u = constant_arrays<Dim>(f.velocity_next);
-    const double scale = -s.density / s.time_step;
-    f.poisson.reset(s.neighbours);
+void sum_density(Simulation<Dim>& s, Field& density) {
+    const UniformVolume mass{s.particle_mass};
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
-        double divergence = 0;
-        if (f.normalised) {
-            const Matrix<Dim> L = read_matrix<Dim>(*f.renormalisation, i);
-            divergence = (vector_gradient_difference<Dim>(row, i, u, f.volume) * L).trace();
-        } else {
-            divergence = divergence_difference<Dim>(row, i, u, f.volume);
-        }
-        f.poisson.source(i) = scale * divergence;
-        f.poisson.diagonal(i) =
-            f.schwaiger ? laplacian_schwaiger_weights<Dim>(
-                              row, f.volume, read_matrix<Dim>(*f.renormalisation, i), f.poisson.weights(i))
-                        : laplacian_morris_weights<Dim>(row, f.volume, f.eta_squared, f.poisson.weights(i));
-    });
-    s.count_sweeps(f.schwaiger ? 3 : 2);
-    solve_poisson(s, f.poisson, f.pressure);
-}
-
-/// u^{n+1} = u* - (dt/rho) grad p, and r^{n+1} = r* + (dt/2)(u^{n+1} - u^n), which equals r^n + (dt/2)(u^n +
-/// u^{n+1}).
-template <int Dim>
-void project(Simulation<Dim>& s, Fields<Dim>& f) {
-    const auto u = arrays<Dim>(s.particles.velocity);
-    const auto next = arrays<Dim>(f.velocity_next);
-    const auto x = arrays<Dim>(s.particles.position);
-    const double scale = s.time_step / s.density;
-    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
-        Vector<Dim> gradient = gradient_difference<Dim>(row, i, f.pressure[0], f.volume);
-        if (f.normalised) {
-            gradient = read_matrix<Dim>(*f.renormalisation, i) * gradient;
-        }
-        for (int d = 0; d < Dim; ++d) {
-            next[d][i] -= scale * gradient[d];
-        }
+        density[0][i] = summation_density<Dim>(row, *s.kernel, s.smoothing_length, mass, s.particle_mass);
     });
     s.count_sweeps(1);
-    const int count = static_cast<int>(s.particles.size());
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < count; ++i) {
-        for (int d = 0; d < Dim; ++d) {
-            const double correction = 0.5 * s.time_step * (next[d][i] - u[d][i]);
-            x[d][i] += correction;
-            u[d][i] = next[d][i];
-            next[d][i] = correction; // how far the particle is now from where the neighbour list was made
-        }
-    }
 }
 
-} // namespace
+template <int Dim>
+double mean_density(const Simulation<Dim>& s, const Field& density) {
+    const int count = static_cast<int>(s.particles.size());
+    return deterministic_sum(count, [&](int i) { return density[0][i]; }) / count;
+}
+
+template <int Dim>
+void write_divergence_equations(Simulation<Dim>& s, Projection<Dim>& p) {
+    const auto u = constant_arrays<Dim>(p.velocity_next);
+    // The density is in the weights where it varies.
+    const double scale = p.density != nullptr ? -1 / s.time_step : -s.density / s.time_step;
+    const bool needs_L = p.gradient == Gradient::normalised || p.schwaiger;
+    p.poisson.reset(s.neighbours);
+    p.poisson.set_round_off(sum_round_off * std::abs(scale) * s.reference_speed / s.smoothing_length);
+    with_volume(s, p, [&](const auto& volume) {
+        for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+            const Matrix<Dim> L = renormalisation_at<Dim>(p, needs_L, i, row, volume);
+            p.poisson.source(i) = scale * divergence<Dim>(p, i, row, u, volume, L);
+            p.poisson.diagonal(i) = write_weights<Dim>(p, i, row, volume, L);
+        });
+    });
+    s.count_sweeps(1 + weight_sweeps(p) + renormalisation_sweeps(p, needs_L));
+}
+
+template <int Dim>
+void write_density_equations(Simulation<Dim>& s, Projection<Dim>& p, double tau_squared) {
+    const MassOverDensity particles{s.particle_mass, (*p.density)[0]};
+    const double scale = 1 / (s.density * tau_squared);
+    const double mean = mean_density(s, *p.density);
+    p.poisson.reset(s.neighbours);
+    p.poisson.set_round_off(sum_round_off * scale * s.density);
+    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+        const Matrix<Dim> L = renormalisation_at<Dim>(p, p.schwaiger, i, row, particles);
+        p.poisson.source(i) = -scale * (mean - particles.rho[i]);
+        p.poisson.diagonal(i) = write_weights<Dim>(p, i, row, particles, L);
+    });
+    s.count_sweeps(weight_sweeps(p) + renormalisation_sweeps(p, p.schwaiger));
+}
 
 TimeOrder euler_order(const Settings& /*settings*/) {
     return {1,
@@ -177,52 +315,37 @@ void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pre
     }
 }
 
-template void solve_poisson(Simulation<2>&, PressurePoisson<2>&, Field&);
-template void solve_poisson(Simulation<3>&, PressurePoisson<3>&, Field&);
-
-std::vector<Key> keys() {
-    return joined(
-        common_keys("quintic_spline", 1.3),
-        {Key::word("laplacian", "morris", {"morris", "schwaiger"},
-                   "Laplacian of viscosity and pressure: LM or LS"),
-         Key::word("gradient", "normalised", {"normalised", "plain"},
-                   "gradient and divergence: renormalised G- or G-"),
-         Key::number("eta_over_h", 0, 0, 1, "1", "eta/h in the Morris Laplacian"),
-         Key::number("advective_limit", 0.2, 1e-4, 2, "1", "dt <= this h/u_max"),
-         Key::number("viscous_limit", 0.2, 1e-4, 2, "1", "dt <= this h^2/nu"),
-         Key::number("pressure_tolerance", 1e-5, 1e-14, 0.1, "1", "relative residual of the pressure solve"),
-         Key::word("preconditioner", "two_level", {"two_level", "jacobi"}, "of the pressure solve")});
-}
-
 template <int Dim>
-void add_divergence_free_stages(Simulation<Dim>& s) {
-    using Poisson = PressurePoisson<Dim>;
-    const bool schwaiger = s.settings.word("laplacian") == "schwaiger";
-    const bool normalised = s.settings.word("gradient") == "normalised";
-    const double eta = s.settings.number("eta_over_h") * s.smoothing_length;
-    typename Poisson::Options options;
-    options.tolerance = s.settings.number("pressure_tolerance");
-    options.symmetric = !schwaiger;
-    options.preconditioner = s.settings.word("preconditioner") == "jacobi"
-                                 ? Poisson::Preconditioner::jacobi
-                                 : Poisson::Preconditioner::two_level;
-    Particles<Dim>& particles = s.particles;
-    auto fields = std::make_shared<Fields<Dim>>(Fields<Dim>{
-        particles.field("pressure", 1, Lifetime::state, "pressure_poisson"),
-        particles.field("velocity_next", Dim, Lifetime::scratch, "viscosity"),
-        normalised || schwaiger
-            ? &particles.field("renormalisation", Dim * Dim, Lifetime::scratch, "viscosity")
-            : nullptr,
-        normalised, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density}, Poisson(options)});
-    s.add_stage("time_step", choose_time_step<Dim>);
-    s.add_stage("drift", drift<Dim>);
-    s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });
-    s.add_stage("viscosity", [fields](Simulation<Dim>& sim) { add_viscosity(sim, *fields); });
-    s.add_stage("pressure_poisson", [fields](Simulation<Dim>& sim) { solve_pressure(sim, *fields); });
-    s.add_stage("projection", [fields](Simulation<Dim>& sim) { project(sim, *fields); });
+void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, const Field& pressure,
+                                double scale, Field& target) {
+    const auto changed = arrays<Dim>(target);
+    const double* rho = p.density != nullptr ? (*p.density)[0] : nullptr;
+    with_volume(s, p, [&](const auto& volume) {
+        for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+            const Vector<Dim> gradient = pressure_gradient<Dim>(p, i, row, pressure[0], volume);
+            const double factor = scale / (rho != nullptr ? rho[i] : s.density);
+            for (int d = 0; d < Dim; ++d) {
+                changed[d][i] -= factor * gradient[d];
+            }
+        });
+    });
+    s.count_sweeps(1 + renormalisation_sweeps(p, p.gradient == Gradient::normalised));
 }
 
-template void add_divergence_free_stages(Simulation<2>&);
-template void add_divergence_free_stages(Simulation<3>&);
+#define SPHVV_INSTANTIATE(Dim)                                                                               \
+    template std::shared_ptr<Projection<Dim>> make_projection(Simulation<Dim>&, Density);                    \
+    template void choose_time_step(Simulation<Dim>&);                                                        \
+    template void drift(Simulation<Dim>&);                                                                   \
+    template void form_viscous_velocity(Simulation<Dim>&, Projection<Dim>&, double);                         \
+    template void sum_density(Simulation<Dim>&, Field&);                                                     \
+    template double mean_density(const Simulation<Dim>&, const Field&);                                      \
+    template void write_divergence_equations(Simulation<Dim>&, Projection<Dim>&);                            \
+    template void write_density_equations(Simulation<Dim>&, Projection<Dim>&, double);                       \
+    template void solve_poisson(Simulation<Dim>&, PressurePoisson<Dim>&, Field&);                            \
+    template void subtract_pressure_gradient(Simulation<Dim>&, const Projection<Dim>&, const Field&, double, \
+                                             Field&);
+SPHVV_INSTANTIATE(2)
+SPHVV_INSTANTIATE(3)
+#undef SPHVV_INSTANTIATE
 
 } // namespace sphvv::solver::projection

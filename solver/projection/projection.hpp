@@ -1,12 +1,91 @@
 #pragma once
 
 #include "sphvv/solver/linear/pressure_poisson.hpp"
+#include "sphvv/solver/operators/row.hpp"
 #include "sphvv/solver/schemes.hpp"
 
+#include <memory>
+
+/// What pressure-projection schemes are made of. A scheme's stages are these acts in the order that its
+/// publication gives; two schemes that share a whole list of stages share a file of this folder.
 namespace sphvv::solver::projection {
 
+/// What a scheme takes unless it is told otherwise.
+struct Defaults {
+    std::string_view kernel = "quintic_spline";
+    double h_over_dx = 1.3;
+    std::string_view gradient = "normalised";
+    double advective_limit = 0.2;
+    double viscous_limit = 0.2;
+};
+
 /// The keys of a pressure-projection scheme.
-std::vector<Key> keys();
+std::vector<Key> keys(const Defaults& defaults = {});
+
+/// Size of the round-off in a sum over neighbours, against the size of its terms: machine accuracy times the
+/// hundreds of spacings in a box, because the distance of two particles is a difference of their coordinates.
+constexpr double sum_round_off = 1e-12;
+
+enum class Gradient { normalised, plain, symmetric };
+enum class Viscosity { morris, schwaiger, monaghan_cleary };
+
+/// Fields and choices that the stages of one step share.
+template <int Dim>
+struct Projection {
+    Field& pressure;        ///< Pa
+    Field& velocity_next;   ///< u* (m/s), while velocity still holds the one before
+    Field* renormalisation; ///< L_i, row by row; none where nothing needs it, or the density is summed
+    Field* density;         ///< summation density (kg/m^dim); where there is none, it is rho_0
+    Gradient gradient;
+    Viscosity viscosity;
+    bool schwaiger; ///< LS of the pressure, else LM
+    double eta_squared;
+    UniformVolume volume; ///< m/rho_0
+    PressurePoisson<Dim> poisson;
+};
+
+/// The density in div(grad p/rho): rho_0, or summed over the neighbours.
+enum class Density { constant, summed };
+
+/// The fields and choices that the settings ask for. A scheme of constant density has one list of neighbours
+/// in a step: viscosity forms L_i, and the Poisson equation and the projection read it. A scheme of summed
+/// density moves its particles in between, so that an L_i would be read once or twice only: each sweep forms
+/// its own.
+template <int Dim>
+std::shared_ptr<Projection<Dim>> make_projection(Simulation<Dim>& simulation, Density density);
+
+/// dt = min(advective_limit h/u_max, viscous_limit h^2/nu) and, for a scheme that has the key, force_limit
+/// sqrt(h/|a|) with the largest acceleration of the last step. Source: Xu 2009 §3.4; Lee 2008 §1.3.
+template <int Dim>
+void choose_time_step(Simulation<Dim>& simulation);
+
+/// r += dt u.
+template <int Dim>
+void drift(Simulation<Dim>& simulation);
+
+/// u* = u + dt nu Laplacian u on the current neighbours, at the density rho_0; writes L_i where it is kept.
+template <int Dim>
+void form_viscous_velocity(Simulation<Dim>& simulation, Projection<Dim>& projection, double dt);
+
+/// rho_i = m sum_j W_ij, i included, on the current neighbours. Source: Shao & Lo 2003; Hu & Adams 2007 (m
+/// sigma_i); Asai 2012.
+template <int Dim>
+void sum_density(Simulation<Dim>& simulation, Field& density);
+
+/// Writes the equations div(grad p/rho) = div u*/dt, for a constant density Laplacian p = (rho_0/dt) div u*.
+template <int Dim>
+void write_divergence_equations(Simulation<Dim>& simulation, Projection<Dim>& projection);
+
+/// Mean of the summation density (kg/m^dim). It takes the place of rho_0 in a source rho_0 - rho: a constant
+/// is out of reach of the Poisson equation in a periodic box, and its solver projects it out. On a lattice it
+/// is nearly all there is; taken off before, it leaves no round-off of its own size.
+template <int Dim>
+double mean_density(const Simulation<Dim>& simulation, const Field& density);
+
+/// Writes the equations div(grad p/rho) = (rho_0 - rho)/(rho_0 tau^2) with the summation density rho: the
+/// motion -tau^2 grad p/rho takes the particles to the density rho_0.
+template <int Dim>
+void write_density_equations(Simulation<Dim>& simulation, Projection<Dim>& projection, double tau_squared);
 
 /// Order in time of u^{n+1} = u^n + dt (...)(r* = r^n + dt u^n): one.
 TimeOrder euler_order(const Settings& settings);
@@ -16,10 +95,9 @@ TimeOrder euler_order(const Settings& settings);
 template <int Dim>
 void solve_poisson(Simulation<Dim>& simulation, PressurePoisson<Dim>& poisson, Field& pressure);
 
-/// Stages of ISPH_DF (Cummins & Rudman 1999; Xu 2009 §2.2): r* = r^n + dt u^n; u* = u^n + dt nu Laplacian u^n
-/// and the Poisson equation Laplacian p = (rho/dt) div u* at r*; u^{n+1} = u* - (dt/rho) grad p; r^{n+1} =
-/// r^n + (dt/2)(u^n + u^{n+1}).
+/// target -= scale grad p/rho: of the velocity with scale = dt, of the position with tau^2.
 template <int Dim>
-void add_divergence_free_stages(Simulation<Dim>& simulation);
+void subtract_pressure_gradient(Simulation<Dim>& simulation, const Projection<Dim>& projection,
+                                const Field& pressure, double scale, Field& target);
 
 } // namespace sphvv::solver::projection

@@ -1,4 +1,4 @@
-#include "sphvv/solver/projection/projection.hpp"
+#include "sphvv/solver/projection/moved_positions.hpp"
 
 namespace sphvv::solver::schemes {
 
@@ -12,8 +12,8 @@ const Scheme& isph_df() {
         .compressible = false,
         .keys = projection::keys(),
         .time_order = projection::euler_order,
-        .assemble_2d = projection::add_divergence_free_stages<2>,
-        .assemble_3d = projection::add_divergence_free_stages<3>,
+        .assemble_2d = projection::add_stages_at_moved_positions<2>,
+        .assemble_3d = projection::add_stages_at_moved_positions<3>,
     };
     return scheme;
 }

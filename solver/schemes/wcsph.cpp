@@ -35,33 +35,6 @@ void add_time_step_stage(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& 
     s.add_stage("time_step", [f](Simulation<Dim>& sim) { choose_time_step(sim, f->tait.sound_speed); });
 }
 
-template <int Dim>
-double largest(const Field& field, int count) {
-    double squared_maximum = 0;
-#pragma omp parallel for schedule(static) reduction(max : squared_maximum)
-    for (int i = 0; i < count; ++i) {
-        double squared = 0;
-        for (int d = 0; d < Dim; ++d) {
-            squared += field[d][i] * field[d][i];
-        }
-        squared_maximum = std::max(squared_maximum, squared);
-    }
-    return std::sqrt(squared_maximum);
-}
-
-/// target += scale * increment, component by component.
-template <int Dim>
-void add_scaled(Field& target, double scale, const Field& increment, int count) {
-    for (int d = 0; d < Dim; ++d) {
-        double* to = target[d];
-        const double* from = increment[d];
-#pragma omp parallel for simd schedule(static)
-        for (int i = 0; i < count; ++i) {
-            to[i] += scale * from[i];
-        }
-    }
-}
-
 /// Lee 2008 §1.1: u^{n+1} from p^n, u^n; r^{n+1} = r^n + dt u^{n+1}; rho^{n+1} = rho^n - dt rho^n div
 /// u^{n+1}, on the neighbours of r^n. Updating rho with the new velocity makes the acoustic part symplectic:
 /// with the old one the step is forward Euler for sound and unstable at any dt > nu/c0^2.
@@ -70,18 +43,16 @@ void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& 
     add_time_step_stage(s, f);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
     s.add_stage("momentum", [f](Simulation<Dim>& sim) {
-        const int count = static_cast<int>(sim.particles.size());
         accelerate(sim, *f);
-        sim.maximum_acceleration = largest<Dim>(f->acceleration, count);
-        add_scaled<Dim>(sim.particles.velocity, sim.time_step, f->acceleration, count);
+        sim.maximum_acceleration = largest_norm<Dim>(f->acceleration);
+        add_scaled<Dim>(sim.particles.velocity, sim.time_step, f->acceleration);
     });
     s.add_stage("continuity", [f](Simulation<Dim>& sim) {
         continuity(sim, *f);
-        add_scaled<1>(f->density, sim.time_step, f->density_rate, static_cast<int>(sim.particles.size()));
+        add_scaled<1>(f->density, sim.time_step, f->density_rate);
     });
     s.add_stage("drift", [](Simulation<Dim>& sim) {
-        add_scaled<Dim>(sim.particles.position, sim.time_step, sim.particles.velocity,
-                        static_cast<int>(sim.particles.size()));
+        add_scaled<Dim>(sim.particles.position, sim.time_step, sim.particles.velocity);
     });
 }
 
@@ -93,10 +64,9 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
     add_time_step_stage(s, f);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });
     s.add_stage("predictor", [f, &start, &moved](Simulation<Dim>& sim) {
-        const int count = static_cast<int>(sim.particles.size());
         const double half = 0.5 * sim.time_step;
         accelerate(sim, *f);
-        sim.maximum_acceleration = largest<Dim>(f->acceleration, count);
+        sim.maximum_acceleration = largest_norm<Dim>(f->acceleration);
         continuity(sim, *f);
         for (int d = 0; d < Dim; ++d) {
             start.components[d] = sim.particles.position.components[d];
@@ -104,14 +74,13 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
             std::fill(moved.components[d].begin(), moved.components[d].end(), 0.0);
         }
         start.components.back() = f->density.components[0];
-        add_scaled<Dim>(moved, half, sim.particles.velocity, count);
-        add_scaled<Dim>(sim.particles.position, 1, moved, count);
-        add_scaled<Dim>(sim.particles.velocity, half, f->acceleration, count);
-        add_scaled<1>(f->density, half, f->density_rate, count);
+        add_scaled<Dim>(moved, half, sim.particles.velocity);
+        add_scaled<Dim>(sim.particles.position, 1, moved);
+        add_scaled<Dim>(sim.particles.velocity, half, f->acceleration);
+        add_scaled<1>(f->density, half, f->density_rate);
         update_pressure(sim, *f);
     });
     s.add_stage("corrector", [f, &start, &moved](Simulation<Dim>& sim) {
-        const int count = static_cast<int>(sim.particles.size());
         if (!sim.neighbours.follow(constant_arrays<Dim>(moved))) {
             renew_neighbours(sim);
         }
@@ -120,13 +89,13 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
         for (int d = 0; d < Dim; ++d) {
             sim.particles.position.components[d] = start.components[d];
         }
-        add_scaled<Dim>(sim.particles.position, sim.time_step, sim.particles.velocity, count);
+        add_scaled<Dim>(sim.particles.position, sim.time_step, sim.particles.velocity);
         for (int d = 0; d < Dim; ++d) {
             sim.particles.velocity.components[d] = start.components[Dim + d];
         }
         f->density.components[0] = start.components.back();
-        add_scaled<Dim>(sim.particles.velocity, sim.time_step, f->acceleration, count);
-        add_scaled<1>(f->density, sim.time_step, f->density_rate, count);
+        add_scaled<Dim>(sim.particles.velocity, sim.time_step, f->acceleration);
+        add_scaled<1>(f->density, sim.time_step, f->density_rate);
     });
 }
 
@@ -182,14 +151,14 @@ void add_verlet_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f)
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
     s.add_stage("momentum", [f](Simulation<Dim>& sim) {
         accelerate(sim, *f);
-        sim.maximum_acceleration = largest<Dim>(f->acceleration, static_cast<int>(sim.particles.size()));
+        sim.maximum_acceleration = largest_norm<Dim>(f->acceleration);
     });
     s.add_stage("continuity", [f](Simulation<Dim>& sim) { continuity(sim, *f); });
     s.add_stage("verlet", [f, before](Simulation<Dim>& sim) {
         const int count = static_cast<int>(sim.particles.size());
         const double dt = sim.time_step;
-        add_scaled<Dim>(sim.particles.position, dt, sim.particles.velocity, count);
-        add_scaled<Dim>(sim.particles.position, dt * dt / 2, f->acceleration, count);
+        add_scaled<Dim>(sim.particles.position, dt, sim.particles.velocity);
+        add_scaled<Dim>(sim.particles.position, dt * dt / 2, f->acceleration);
         step_verlet<Dim>(sim.particles.velocity, before->velocity, dt, before->leaps, f->acceleration, count);
         step_verlet<1>(f->density, before->density, dt, before->leaps, f->density_rate, count);
     });
@@ -221,9 +190,14 @@ void assemble(Simulation<Dim>& s) {
 }
 
 TimeOrder time_order(const Settings& settings) {
-    return settings.word("integrator") == "explicit"
-               ? TimeOrder{1, "symplectic Euler (Lee 2008 §1.1)"}
-               : TimeOrder{2, "midpoint predictor-corrector (Issa 2005 §3, scheme PC)"};
+    const std::string& integrator = settings.word("integrator");
+    if (integrator == "explicit") {
+        return {1, "symplectic Euler (Lee 2008 §1.1)"};
+    }
+    if (integrator == "verlet") {
+        return {1, "Verlet, second order but for the Euler step at every restart"};
+    }
+    return {2, "midpoint predictor-corrector (Issa 2005 §3, scheme PC)"};
 }
 
 } // namespace

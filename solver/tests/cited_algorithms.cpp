@@ -9,19 +9,53 @@ namespace {
 
 using namespace scenes;
 
+struct Choice {
+    const char* scheme;
+    Assignments given;
+};
+
+const std::array projections{
+    Choice{"isph_df", {}},
+    Choice{"isph_df", {{"gradient", "plain"}, {"eta_over_h", "0.1"}}},
+    Choice{"isph_df", {{"gradient", "symmetric"}}},
+    Choice{"isph_df", {{"laplacian", "schwaiger"}}},
+    Choice{"isph_df", {{"laplacian", "schwaiger"}, {"gradient", "plain"}}},
+    Choice{"isph_df", {{"viscosity", "monaghan_cleary"}, {"eta_over_h", "0.1"}}},
+    Choice{"isph_df", {{"viscosity", "monaghan_cleary"}, {"laplacian", "schwaiger"}}},
+    Choice{"isph_df", {{"preconditioner", "jacobi"}}},
+    Choice{"isph_dfs", {}},
+    Choice{"isph_dfs", {{"shift_correction", "none"}, {"shift_coefficient", "0.1"}}},
+    Choice{"isph_dfs", {{"shift_correction", "second"}, {"shift_coefficient", "0.1"}}},
+    Choice{"isph_dfs", {{"shift_limit", "0.02"}}},
+    Choice{"isph_di", {}},
+    Choice{"isph_di", {{"gradient", "plain"}, {"eta_over_h", "0.1"}}},
+    Choice{"isph_di", {{"gradient", "symmetric"}, {"viscosity", "monaghan_cleary"}}},
+    Choice{"isph_di", {{"laplacian", "schwaiger"}}},
+    Choice{"isph_di", {{"laplacian", "schwaiger"}, {"gradient", "plain"}}},
+    Choice{"isph_dfdi", {}},
+    Choice{"isph_dfdi", {{"gradient", "plain"}, {"eta_over_h", "0.1"}, {"density_iterations", "4"}}},
+    Choice{"isph_dfdi",
+           {{"gradient", "symmetric"}, {"viscosity", "monaghan_cleary"}, {"density_iterations", "3"}}},
+    Choice{"isph_dfdi", {{"laplacian", "schwaiger"}, {"density_iterations", "2"}}},
+    Choice{"isph_lee", {}},
+    Choice{"isph_lee", {{"gradient", "normalised"}, {"eta_over_h", "0.1"}}},
+    Choice{"isph_lee", {{"gradient", "plain"}, {"viscosity", "monaghan_cleary"}}},
+    Choice{"isph_lee", {{"laplacian", "schwaiger"}}},
+    Choice{"isph_asai", {}},
+    Choice{"isph_asai", {{"relaxation", "0.8"}, {"gradient", "normalised"}}},
+    Choice{"isph_asai", {{"laplacian", "schwaiger"}, {"viscosity", "monaghan_cleary"}}}};
+
+std::string described(const Choice& choice) {
+    std::string text = choice.scheme;
+    for (const auto& [key, value] : choice.given) {
+        text += " " + key + "=" + value;
+    }
+    return text;
+}
+
 TEST(CitedAlgorithm, IsCarriedOutByTheProjectionSchemes) {
-    struct Choice {
-        const char* scheme;
-        Assignments given;
-    };
-    for (const Choice& choice :
-         {Choice{"isph_df", {}}, Choice{"isph_df", {{"gradient", "plain"}, {"eta_over_h", "0.1"}}},
-          Choice{"isph_df", {{"laplacian", "schwaiger"}}},
-          Choice{"isph_df", {{"laplacian", "schwaiger"}, {"gradient", "plain"}}},
-          Choice{"isph_df", {{"preconditioner", "jacobi"}}}, Choice{"isph_dfs", {}},
-          Choice{"isph_dfs", {{"shift_correction", "none"}, {"shift_coefficient", "0.1"}}},
-          Choice{"isph_dfs", {{"shift_limit", "0.02"}}}}) {
-        SCOPED_TRACE(choice.scheme + (choice.given.empty() ? "" : " " + choice.given.begin()->second));
+    for (const Choice& choice : projections) {
+        SCOPED_TRACE(described(choice));
         in_2d_and_3d([&](auto dimension) {
             constexpr int Dim = dimension;
             const Scheme& scheme = schemes::find(choice.scheme);
@@ -34,11 +68,36 @@ TEST(CitedAlgorithm, IsCarriedOutByTheProjectionSchemes) {
             scheme.assemble(scene);
             for (int step = 0; step < 2; ++step) {
                 advance(scene);
-                reference.isph_step(scene.time_step, choices(scene));
+                projection_step(reference, scheme, scene);
                 reference.expect_equals(scene, 1e-9);
             }
         });
     }
+}
+
+// Every iteration of density invariance has a list of its own: weights and two sums over the old one (the
+// gradient and its L_i), the density on the new one.
+TEST(CitedAlgorithm, OfTheTwoInvariancesBooksEveryIteration) {
+    in_2d_and_3d([&](auto dimension) {
+        constexpr int Dim = dimension;
+        const Scheme& scheme = schemes::find("isph_dfdi");
+        Simulation<Dim> scene = general_scene<Dim>(
+            scheme, {{"pressure_tolerance", "1e-13"}, {"h_over_dx", "1.2"}, {"density_tolerance", "0.04"}});
+        Reference<Dim> reference(scene);
+        scheme.assemble(scene);
+        advance(scene);
+        projection_step(reference, scheme, scene);
+        EXPECT_GT(reference.density_iterations, 1);
+        EXPECT_LT(reference.density_iterations, 20);
+        ASSERT_EQ(reference.listed_pairs.size(), reference.density_iterations + 1);
+        std::int64_t expected = reference.listed_pairs.front();
+        for (int m = 0; m < reference.density_iterations; ++m) {
+            expected += 3 * reference.listed_pairs[m] + reference.listed_pairs[m + 1];
+        }
+        const auto stage = std::ranges::find(scene.stages, "density_invariance", &Stage<Dim>::name);
+        ASSERT_NE(stage, scene.stages.end());
+        EXPECT_EQ(stage->pair_evaluations, expected);
+    });
 }
 
 TEST(CitedAlgorithm, IsCarriedOutByTheWeaklyCompressibleScheme) {
@@ -276,7 +335,7 @@ TEST(CitedAlgorithm, IsCarriedOutWhereTheNeighbourListCannotFollow) {
             shifting.assemble(scene);
             advance(scene);
             EXPECT_EQ(pairs_in_the_skin(scene.neighbours) == 0, far);
-            reference.isph_step(scene.time_step, choices(scene));
+            projection_step(reference, shifting, scene);
             reference.expect_equals(scene, 1e-9);
 
             const Scheme& weakly = schemes::find("wcsph");

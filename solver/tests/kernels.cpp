@@ -244,6 +244,22 @@ TEST_P(EveryKernel, GivesTheSameSlopesInBatchesAsOneByOne) {
     }
 }
 
+TEST_P(EveryKernel, GivesTheSameValuesInBatchesAsOneByOne) {
+    constexpr double h = 0.3;
+    for (std::size_t count = 0; count <= 19; ++count) {
+        const std::vector<double> squared = random.values(count, 0, 1.2 * std::pow(kernel.support * h, 2));
+        std::vector<double> batch(count + 1, 42.0);
+        for (const int dim : {1, 2, 3}) {
+            kernel.values(squared, h, kernel.value_scale(dim, h), batch.data());
+            for (std::size_t k = 0; k < count; ++k) {
+                const double alone = kernel.value(dim, std::sqrt(squared[k]), h);
+                EXPECT_NEAR(batch[k], alone, 1e-12 * alone + 1e-14 * kernel.value(dim, 0, h));
+            }
+            EXPECT_EQ(batch[count], 42) << "written beyond the end";
+        }
+    }
+}
+
 TEST_P(EveryKernel, HasAGradientThatIsItsSlopeTimesTheSeparation) {
     constexpr double h = 0.7;
     for (const int dim : {1, 2, 3}) {

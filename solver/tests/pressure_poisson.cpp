@@ -212,6 +212,25 @@ TYPED_TEST(PressurePoissonTest, HasNoPressureWithoutASource) {
                         });
 }
 
+TYPED_TEST(PressurePoissonTest, HasNoPressureWhereTheSourceIsRoundOff) {
+    constexpr int Dim = TypeParam::value;
+    this->for_each_case(9, 1e-5, [&](const Sample<Dim>& sample, PressurePoisson<Dim>& problem, Case) {
+        const std::vector<double> noise = this->random.values(sample.count(), 2 - 1e-14, 2 + 1e-14);
+        const auto solve_with = [&](double round_off) {
+            set_source(problem, Eigen::Map<const Eigen::VectorXd>(noise.data(), sample.count()));
+            problem.set_round_off(round_off);
+            std::vector<double> p = this->random.values(sample.count(), -1, 1);
+            const LinearSolve solve = problem.solve(p.data());
+            const bool nothing = std::ranges::all_of(p, [](double value) { return value == 0; });
+            EXPECT_EQ(nothing, round_off > 1e-14);
+            EXPECT_EQ(solve.iterations == 0, nothing);
+            EXPECT_TRUE(solve.converged || !nothing);
+        };
+        solve_with(1e-13);
+        solve_with(1e-15); // a solution that is lost against the guess
+    });
+}
+
 TYPED_TEST(PressurePoissonTest, NeedsNoIterationFromTheSolution) {
     constexpr int Dim = TypeParam::value;
     this->for_each_case(
