@@ -14,6 +14,7 @@ namespace sphvv::solver {
 struct TimeOrder {
     double order;
     std::string source;
+    std::string waiver{}; ///< reason for which the scheme is known not to show it
 };
 
 /// Declaration of a scheme: the algorithm as a list of stages. One file in solver/schemes/ defines one.

@@ -107,7 +107,7 @@ template <int Dim>
 auto renormalised_force(int i, const MomentumFields<Dim>& fields, double m, double own_pressure) {
     return [weight = ProductWeight<Dim>(i, fields, m, own_pressure),
             L = read_symmetric<Dim>(fields.renormalisation, i)](const Pairs<Dim>& pairs) {
-        return [pairs, w = weight(pairs), L](int d) {
+        return [w = weight(pairs), L, pairs](int d) {
             Lanes along{};
             for (int b = 0; b < Dim; ++b) {
                 along += L(d, b) * pairs.separation(b);
@@ -162,7 +162,7 @@ struct RenormalisedCoherent {
     template <int Dim>
     static auto at(const Row<Dim>& /*row*/, int i, const MomentumFields<Dim>& fields, double m) {
         const Matrix<Dim> own = fields.pressure[i] * read_symmetric<Dim>(fields.renormalisation, i);
-        return [&fields, own, scale = -m * fields.specific_volume[i]](const Pairs<Dim>& pairs) {
+        return [own, &fields, scale = -m * fields.specific_volume[i]](const Pairs<Dim>& pairs) {
             const Lanes weight = scale * gather(fields.specific_volume, pairs.j()) * pairs.slope();
             const Lanes p = gather(fields.pressure, pairs.j());
             std::array<Lanes, Dim> result{};
@@ -195,7 +195,7 @@ struct Morris {
                 eta_squared](const Pairs<Dim>& pairs) {
             const Lanes viscous = scale * gather(fields.specific_volume, pairs.j()) *
                                   regularised_slope<Dim>(pairs.row, pairs.k, eta_squared);
-            return [&fields, i, viscous, pairs](int d) {
+            return [viscous, pairs, &fields, i](int d) {
                 return viscous * (fields.u[d][i] - gather(fields.u[d], pairs.j()));
             };
         };

@@ -299,8 +299,11 @@ void write_density_equations(Simulation<Dim>& s, Projection<Dim>& p, double tau_
 }
 
 TimeOrder euler_order(const Settings& /*settings*/) {
-    return {1,
-            "forward Euler: viscosity of the old velocity, pressure constant over the step (Xu 2009 §2.2)"};
+    return {
+        1, "forward Euler: viscosity of the old velocity, pressure constant over the step (Xu 2009 §2.2)",
+        "the projection is approximate, its Laplacian is not div grad: a step takes off the share "
+        "(div grad)/Laplacian of a mode's divergence, which is near 0 for the shortest waves; theirs adds "
+        "up over the steps, and with it a pressure that is the larger the finer the step"};
 }
 
 template <int Dim>

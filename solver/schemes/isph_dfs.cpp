@@ -111,8 +111,8 @@ void assemble(Simulation<Dim>& s) {
         return &s.particles.field(name, components, Lifetime::scratch, "shifting");
     };
     const Shift<Dim> fields{*scratch("velocity_next", Dim),
-                      order == "none" ? nullptr : scratch("shift_correction", Dim + 1),
-                      order == "second" ? scratch("shift_gradient", Dim * (Dim + 1)) : nullptr};
+                            order == "none" ? nullptr : scratch("shift_correction", Dim + 1),
+                            order == "second" ? scratch("shift_gradient", Dim * (Dim + 1)) : nullptr};
     s.add_stage("shifting", [fields](Simulation<Dim>& sim) { shift(sim, fields); });
 }
 

@@ -1,5 +1,6 @@
 #include "sphvv/solver/operators/laplacian_morris.hpp"
 #include "sphvv/solver/operators/moving_least_squares.hpp"
+#include "sphvv/solver/operators/renormalisation.hpp"
 #include "sphvv/solver/projection/projection.hpp"
 
 #include <algorithm>
@@ -82,7 +83,9 @@ struct Fields {
     const RungeKutta& method;
     double lambda;   ///< 1/s
     double kappa;    ///< 1/s2
-    double mobility; ///< du_s = mobility * repulsion(), m/s
+    double mobility; ///< du_s = mobility * root mean square of u * repulsion()
+    bool quadratic;  ///< moving least squares; else renormalised gradient and Morris Laplacian
+    UniformVolume volume;
 };
 
 template <int Dim>
@@ -194,6 +197,43 @@ std::array<double*, Dim> gradient_weights(Fields<Dim>& f, const NeighbourList<Di
     return weights;
 }
 
+/// The renormalised gradient G- and the Morris Laplacian as weights of A_j - A_i; returns the sum of the
+/// latter.
+template <int Dim>
+double renormalised_weights(const Row<Dim>& row, const UniformVolume& volume,
+                            const std::array<double*, Dim>& gradient, double* laplacian) {
+    const Matrix<Dim> L = renormalisation<Dim>(row, volume);
+    for (int k = 0; k < row.padded; k += lane_count) {
+        // grad W_ij = F_ij (r_i - r_j), and G- sums V_j (A_j - A_i) grad W_ij.
+        const Lanes weight = volume(row.index + k) * load(row.slope + k);
+        for (int d = 0; d < Dim; ++d) {
+            Lanes component{};
+            for (int c = 0; c < Dim; ++c) {
+                component += L(d, c) * load(row.separation[c] + k);
+            }
+            store(gradient[d] + k, weight * component);
+        }
+    }
+    return laplacian_morris_weights<Dim>(row, volume, 0, laplacian);
+}
+
+/// Root of the mean square velocity, m/s. Shifts are scaled with it, so that they end with the flow; the
+/// largest speed of Xu 2009 would do, too, but its derivative jumps when another particle becomes the
+/// fastest.
+template <int Dim>
+double typical_speed(const Simulation<Dim>& s) {
+    const int count = static_cast<int>(s.particles.size());
+    const auto u = constant_arrays<Dim>(s.particles.velocity);
+    const double squares = deterministic_sum(count, [&](int i) {
+        double squared = 0;
+        for (int d = 0; d < Dim; ++d) {
+            squared += u[d][i] * u[d][i];
+        }
+        return squared;
+    });
+    return std::sqrt(squares / count);
+}
+
 /// Weights of gradient and Laplacian, and every rate but for the pressure gradient.
 template <int Dim>
 void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
@@ -205,17 +245,21 @@ void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const auto w = arrays<Dim>(f.drift_velocity);
     const auto a = arrays<Dim>(f.acceleration);
+    const double mobility = f.mobility * typical_speed(s);
     std::atomic<int> undetermined{list.size()};
     for_each_row(list, [&](int i, const Row<Dim>& row) {
         const auto weights = gradient_weights(f, list, i);
-        const auto total = taylor_weights<Dim, 2>(row, s.smoothing_length, weights, f.poisson.weights(i));
+        const auto total =
+            f.quadratic
+                ? taylor_weights<Dim, 2>(row, s.smoothing_length, weights, f.poisson.weights(i))
+                : std::optional(renormalised_weights<Dim>(row, f.volume, weights, f.poisson.weights(i)));
         if (!total) {
             undetermined = i;
             return;
         }
         f.poisson.diagonal(i) = *total;
         const Vector<Dim> shift =
-            f.mobility * repulsion<Dim>(row, f.strength[0], s.particle_spacing, list.support_radius());
+            mobility * repulsion<Dim>(row, f.strength[0], s.particle_spacing, list.support_radius());
         Matrix<Dim> G;
         Vector<Dim> laplacian;
         for (int d = 0; d < Dim; ++d) {
@@ -236,7 +280,7 @@ void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
                        " do not determine a quadratic polynomial at t = " + shortest(s.time) + ", step " +
                        std::to_string(s.step));
     }
-    s.count_sweeps(4); // normal matrix, weights, gradient and Laplacian, repulsion
+    s.count_sweeps(4); // normal (or renormalisation) matrix, weights, gradient and Laplacian, repulsion
 }
 
 /// w(r, u), a(r, u) and the pressure, on the current neighbour list.
@@ -298,22 +342,25 @@ void assemble(Simulation<Dim>& s) {
     Particles<Dim>& particles = s.particles;
     const double rate = s.reference_speed / s.smoothing_length;
     const double radius = s.kernel->support * s.smoothing_length;
-    auto fields = std::make_shared<Fields<Dim>>(Fields<Dim>{
-        particles.field("pressure", 1, Lifetime::state, "rates"),
-        particles.field("divergence_integral", 1, Lifetime::state, "rates"),
-        particles.field("repulsion_strength", 1, Lifetime::state, "rates"),
-        // State, because a step ends with the rates that the next one starts with.
-        particles.field("drift_velocity", Dim, Lifetime::state, "rates"),
-        particles.field("acceleration", Dim, Lifetime::state, "rates"),
-        particles.field("divergence_rate", 1, Lifetime::state, "rates"),
-        particles.field("step_start", 2 * Dim + 1, Lifetime::scratch, "runge_kutta"),
-        particles.field("step_increment", 2 * Dim + 1, Lifetime::scratch, "runge_kutta"),
-        Poisson(options),
-        {},
-        method_of(s.settings),
-        s.settings.number("divergence_damping") * rate,
-        s.settings.number("divergence_stiffness") * rate * rate,
-        s.settings.number("shift_coefficient") * rate / stiffness<Dim>(s.particle_spacing, radius)});
+    auto fields = std::make_shared<Fields<Dim>>(
+        Fields<Dim>{particles.field("pressure", 1, Lifetime::state, "rates"),
+                    particles.field("divergence_integral", 1, Lifetime::state, "rates"),
+                    particles.field("repulsion_strength", 1, Lifetime::state, "rates"),
+                    // State, because a step ends with the rates that the next one starts with.
+                    particles.field("drift_velocity", Dim, Lifetime::state, "rates"),
+                    particles.field("acceleration", Dim, Lifetime::state, "rates"),
+                    particles.field("divergence_rate", 1, Lifetime::state, "rates"),
+                    particles.field("step_start", 2 * Dim + 1, Lifetime::scratch, "runge_kutta"),
+                    particles.field("step_increment", 2 * Dim + 1, Lifetime::scratch, "runge_kutta"),
+                    Poisson(options),
+                    {},
+                    method_of(s.settings),
+                    s.settings.number("divergence_damping") * rate,
+                    s.settings.number("divergence_stiffness") * rate * rate,
+                    s.settings.number("shift_coefficient") / s.smoothing_length /
+                        stiffness<Dim>(s.particle_spacing, radius),
+                    s.settings.word("operators") == "quadratic",
+                    UniformVolume{s.particle_mass / s.density}});
     for (std::size_t i = 0; i < particles.size(); ++i) {
         fields->strength[0][i] = 1 + s.settings.number("shift_disorder") * scattered(particles.id[i]);
     }
@@ -347,14 +394,18 @@ const Scheme& isph_mls() {
         .keys = joined(
             common_keys("wendland_c6", 1.8),
             {Key::word("integrator", "heun2", method_names(), "Runge-Kutta method"),
+             Key::word(
+                 "operators", "quadratic", {"quadratic", "renormalised"},
+                 "gradient and Laplacian: quadratic moving least squares, or renormalised G- and Morris"),
              Key::number("divergence_damping", 5, 0, 1e3, "1",
                          "lambda h/U; stable below 2 h/(U dt) with heun2"),
              Key::number(
                  "divergence_stiffness", 6, 0, 1e6, "1",
                  "kappa (h/U)^2; 0 leaves a divergence of O(h^3); critical at a quarter of the damping "
                  "squared"),
-             Key::number("shift_coefficient", 0.9, 0, 1e3, "1",
-                         "C: a particle displaced by d from a lattice drifts back with C U d/h"),
+             Key::number("shift_coefficient", 1.5, 0, 1e3, "1",
+                         "C: a particle displaced by d from a lattice drifts back with C d/h times the root "
+                         "mean square velocity"),
              Key::number("shift_disorder", 0.1, 0, 1, "1", "strengths of repulsion lie within 1 -/+ this"),
              Key::number("advective_limit", 0.2, 1e-4, 2, "1", "dt <= this h/u_max"),
              Key::number("viscous_limit", 0.2, 1e-4, 2, "1", "dt <= this h^2/nu"),

@@ -36,6 +36,7 @@ struct Equations {
     const Reference<Dim>& scene;
     double U, dx;
     double damping, stiffness, shifting;
+    bool quadratic;
     std::vector<double> strength; ///< of repulsion, particle by particle
     Eigen::VectorXd pressure{};
 
@@ -61,6 +62,27 @@ struct Equations {
         const Eigen::MatrixXd Q = qr.householderQ() * Eigen::MatrixXd::Identity(P.rows(), terms);
         const Eigen::MatrixXd R = qr.matrixQR().topRows(terms).template triangularView<Eigen::Upper>();
         return R.triangularView<Eigen::Upper>().solve(Q.transpose()) * root.asDiagonal();
+    }
+
+    /// The same rows where the gradient is the renormalised one and the Laplacian Morris's, which is put
+    /// where the second derivative along x stands.
+    Eigen::MatrixXd renormalised(const std::vector<Neighbour<Dim>>& row) const {
+        const double volume = std::pow(dx, Dim);
+        Matrix<Dim> moment = Matrix<Dim>::Zero();
+        for (const auto& pair : row) {
+            const Vector<Dim> r = Reference<Dim>::separation(pair);
+            moment -= volume * pair.F * r * r.transpose();
+        }
+        const Matrix<Dim> inverse = moment.inverse();
+        Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(Dim + Dim * (Dim + 1) / 2, row.size());
+        for (std::size_t k = 0; k < row.size(); ++k) {
+            const Vector<Dim> gradient = inverse * Reference<Dim>::separation(row[k]);
+            for (int d = 0; d < Dim; ++d) {
+                derivatives(d, k) = volume * row[k].F * gradient[d];
+            }
+            derivatives(Dim, k) = -2 * volume * row[k].F;
+        }
+        return derivatives;
     }
 
     double push(double r) const {
@@ -94,7 +116,7 @@ struct Equations {
         std::vector<Eigen::MatrixXd> G(Dim, Eigen::MatrixXd::Zero(count, count));
         Eigen::MatrixXd laplacian = Eigen::MatrixXd::Zero(count, count);
         for (int i = 0; i < count; ++i) {
-            const Eigen::MatrixXd derivatives = fit(pairs[i]);
+            const Eigen::MatrixXd derivatives = quadratic ? fit(pairs[i]) : renormalised(pairs[i]);
             for (std::size_t k = 0; k < pairs[i].size(); ++k) {
                 const int j = pairs[i][k].j;
                 for (int d = 0; d < Dim; ++d) {
@@ -109,7 +131,11 @@ struct Equations {
         }
         const double lambda = damping * U / scene.h;
         const double kappa = stiffness * U * U / (scene.h * scene.h);
-        const double mobility = shifting * U / scene.h / lattice_stiffness();
+        double squares = 0;
+        for (const Vector<Dim>& u : state.u) {
+            squares += u.squaredNorm() / count;
+        }
+        const double mobility = shifting * std::sqrt(squares) / scene.h / lattice_stiffness();
         State<Dim> result = state;
         Eigen::VectorXd source(count);
         for (int i = 0; i < count; ++i) {
@@ -147,12 +173,19 @@ struct Equations {
 };
 
 TEST(IsphMls, CarriesOutItsEquations) {
-    for (const std::string integrator : {"euler", "heun2", "heun3", "rk4"}) {
-        SCOPED_TRACE(integrator);
+    for (const auto& choice : {std::pair<std::string, std::string>{"euler", "quadratic"},
+                               {"heun2", "quadratic"},
+                               {"heun3", "quadratic"},
+                               {"rk4", "quadratic"},
+                               {"heun2", "renormalised"}}) {
+        const std::string integrator = choice.first;
+        const std::string operators = choice.second;
+        SCOPED_TRACE(integrator + ", " + operators);
         in_2d_and_3d([&](auto dimension) {
             constexpr int Dim = dimension;
             const Scheme& scheme = schemes::find("isph_mls");
             Simulation<Dim> scene = general_scene<Dim>(scheme, {{"integrator", integrator},
+                                                                {"operators", operators},
                                                                 {"pressure_tolerance", "1e-13"},
                                                                 {"h_over_dx", "1.7"},
                                                                 {"divergence_damping", "4"},
@@ -168,6 +201,7 @@ TEST(IsphMls, CarriesOutItsEquations) {
                                      4,
                                      3,
                                      0.7,
+                                     operators == "quadratic",
                                      std::vector<double>(scene.particles.size())};
             for (std::size_t k = 0; k < scene.particles.size(); ++k) {
                 equations.strength[scene.particles.id[k]] = strength[0][k];

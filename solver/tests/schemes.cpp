@@ -487,6 +487,17 @@ const std::array inventories{
               {"position", "velocity", "pressure", "density_pressure"},
               {"velocity_next", "particle_density"},
               {4 + 8 * 9, 4 + 8 * 12}},
+    Inventory{"isph_mls",
+              {},
+              {{"time_step", 0},
+               {"rates_at_start", 5}, // of the first step only
+               {"runge_kutta", 5},
+               {"neighbours", 0},
+               {"rates", 5}},
+              {"position", "velocity", "pressure", "divergence_integral", "repulsion_strength",
+               "drift_velocity", "acceleration", "divergence_rate"},
+              {"step_start", "step_increment"},
+              {4 + 8 * 22, 4 + 8 * 30}},
     Inventory{"isph_lee",
               {},
               {{"time_step", 0},
@@ -714,11 +725,19 @@ TEST(Scene, CarriesOnlyWhatItsSchemeNeeds) {
             const bool projection = std::string_view(inventory.scheme).starts_with("isph");
             const std::int64_t entries =
                 scene.neighbours.pairs() + static_cast<std::int64_t>(scene.particles.size());
-            const int products =
-                scene.settings.has("laplacian") && scene.settings.word("laplacian") == "schwaiger" ? 2 : 1;
+            const bool symmetric =
+                scene.settings.has("laplacian") && scene.settings.word("laplacian") == "morris";
+            const int products = symmetric ? 1 : 2; // in an iteration of CG or of BiCGSTAB
             EXPECT_EQ(scene.work.solver_iterations > 0, projection);
-            EXPECT_EQ(scene.work.matrix_entries,
-                      projection ? entries * (1 + products * scene.work.solver_iterations) : 0);
+            if (std::string_view(inventory.scheme) == "isph_mls") {
+                // A matrix for the start, the prediction and the end, each on a list of its own.
+                const double expected = static_cast<double>(entries) *
+                                        static_cast<double>(3 + products * scene.work.solver_iterations);
+                EXPECT_NEAR(static_cast<double>(scene.work.matrix_entries), expected, 0.02 * expected);
+            } else {
+                EXPECT_EQ(scene.work.matrix_entries,
+                          projection ? entries * (1 + products * scene.work.solver_iterations) : 0);
+            }
         });
     }
 }
