@@ -147,7 +147,7 @@ Description describe(const Options& options) {
 
 SceneRecord scene_of(const Description& description) {
     SceneRecord scene =
-        resolve_scene(verification::cases::find(description.flow), solver::schemes::find(description.scheme),
+        resolve_scene(verification::cases::find(description.flow), &solver::schemes::find(description.scheme),
                       description.settings, description.n);
     scene.seed = static_cast<std::uint64_t>(description.seed);
     check_scene(scene);

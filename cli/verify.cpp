@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "output.hpp"
 #include <algorithm>
+#include <exception>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -35,10 +36,16 @@ struct Options {
 };
 
 LadderRequest request_of(const verification::Case& flow, const Study& study) {
-    LadderRequest request{
-        &flow, {}, study.settings, study.ladder, std::string(to_string(study.tier)), study.time_steps};
-    for (const std::string& name : study.schemes) {
-        request.schemes.push_back(&solver::schemes::find(name));
+    LadderRequest request{&flow,
+                          {},
+                          study.settings,
+                          study.ladder,
+                          std::string(to_string(study.tier)),
+                          study.time_steps,
+                          study.picture_at,
+                          study.name};
+    for (const std::string& text : study.schemes) {
+        request.schemes.push_back(verification::variant_of(text));
     }
     return request;
 }
@@ -47,14 +54,16 @@ LadderRequest request_of(const verification::Case& flow, const Study& study) {
 LadderRequest request_of(const verification::Case& flow, const Options& options) {
     LadderRequest request = request_of(flow, flow.studies.front());
     request.tier = "command";
+    request.picture_at = 0;
+    request.study.clear();
     if (!options.schemes.empty()) {
         request.schemes.clear();
-        for (const std::string& name : options.schemes) {
-            const solver::Scheme* scheme = &solver::schemes::find(name);
-            if (std::find(request.schemes.begin(), request.schemes.end(), scheme) != request.schemes.end()) {
-                throw UserError("--scheme: '" + name + "' is given twice");
+        for (const std::string& text : options.schemes) {
+            const verification::Variant variant = verification::variant_of(text);
+            if (std::ranges::find(request.schemes, variant) != request.schemes.end()) {
+                throw UserError("--scheme: '" + text + "' is given twice");
             }
-            request.schemes.push_back(scheme);
+            request.schemes.push_back(variant);
         }
     }
     if (!options.ladder.empty()) {
@@ -150,7 +159,7 @@ int verify(const Options& options, const std::string& command_line) {
     const auto begin = std::chrono::steady_clock::now();
     std::vector<LadderResult> results;
     int status = 0;
-    int signal = 0;
+    std::exception_ptr ended; // early: the ladders that are complete are worth keeping
     {
         ProgressLine line(options.common.quiet);
         const auto progress = [&](const std::string& group, const verification::RunRecord& run,
@@ -173,8 +182,8 @@ int verify(const Options& options, const std::string& command_line) {
                     std::cout << markdown(results.back()) << std::flush;
                 }
             }
-        } catch (const Interrupted& interrupted) {
-            signal = interrupted.signal; // ladders that are complete are worth keeping
+        } catch (...) {
+            ended = std::current_exception();
         }
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -185,8 +194,8 @@ int verify(const Options& options, const std::string& command_line) {
     if (!options.out.empty()) {
         verification::write_results_hdf5(document, options.out);
     }
-    if (signal != 0) {
-        throw Interrupted(signal);
+    if (ended) {
+        std::rethrow_exception(ended);
     }
     return status;
 }
@@ -212,7 +221,10 @@ void add_verify(CLI::App& app, Act& act, const std::string& command_line) {
     CLI::App* command =
         app.add_subcommand("verify", "schemes against exact solutions: error tables, orders, verdicts");
     command->add_option("names", options->names, "cases or studies (see sphvv list); all cases if left out");
-    command->add_option("--scheme", options->schemes, "schemes to compare, e.g. wcsph,isph_dfs")
+    command
+        ->add_option("--scheme", options->schemes,
+                     "schemes to compare, e.g. wcsph,isph_dfs, or variants of them with settings of their "
+                     "own, e.g. isph_dfs,isph_dfs:shift_correction=none:h_over_dx=1.5")
         ->delimiter(',');
     command->add_option("--kernel", options->kernel, "smoothing kernel of every scheme");
     command

@@ -27,8 +27,9 @@ std::vector<Key> case_keys(const Case& c) {
                                    std::string(p.summary)));
     }
     keys.push_back(Key::number("end_time", c.end_time, 1e-9, 1e9, "s", "time at which errors are taken"));
-    keys.push_back(Key::word("arrangement", "lattice", {"lattice", "jittered"},
-                             "particles at the start; jittered runs five seeds per rung"));
+    keys.push_back(Key::word("arrangement", "lattice", {"lattice", "jittered", "settled"},
+                             "particles at the start; jittered and settled (a jittered tile relaxed by "
+                             "shifts, repeated) run five seeds per rung"));
     keys.push_back(
         Key::number("jitter", 0.1, 0, 0.5, "1", "largest displacement of a jittered start over dx"));
     keys.push_back(Key::number(
@@ -39,8 +40,10 @@ std::vector<Key> case_keys(const Case& c) {
     return keys;
 }
 
-bool applies(std::span<const Condition> conditions, const solver::Settings& settings) {
+bool applies(std::span<const Condition> conditions, const solver::Settings& of_case,
+             const solver::Settings& of_scheme) {
     return std::all_of(conditions.begin(), conditions.end(), [&](const Condition& condition) {
+        const solver::Settings& settings = of_scheme.has(condition.key) ? of_scheme : of_case;
         if (!condition.word.empty()) {
             return settings.word(condition.key) == condition.word;
         }
@@ -50,10 +53,10 @@ bool applies(std::span<const Condition> conditions, const solver::Settings& sett
 }
 
 const Expectation* find_expectation(const Case& c, std::string_view scheme, std::string_view field,
-                                    const solver::Settings& settings) {
+                                    const solver::Settings& of_case, const solver::Settings& of_scheme) {
     for (const Expectation& expectation : c.expectations) {
         if (expectation.scheme == scheme && (expectation.field.empty() || expectation.field == field) &&
-            applies(expectation.where, settings)) {
+            applies(expectation.where, of_case, of_scheme)) {
             return &expectation;
         }
     }

@@ -41,12 +41,14 @@ struct Expectation {
 struct Study {
     std::string name;
     Tier tier;
-    std::vector<std::string> schemes;
+    std::vector<std::string> schemes; ///< or variants, as variant_of() reads them
     solver::Assignments settings;
     std::vector<int> ladder;
     std::string cost; ///< run time on two cores, for the reader
     /// Not empty: a ladder in time, of these steps (s) at the one n of `ladder`.
     std::vector<double> time_steps{};
+    /// Not 0: the rung at which the first run of every scheme keeps its particles for a picture (2-D).
+    int picture_at = 0;
 };
 
 /// What the rungs of a ladder differ in: the particle spacing, and all that is tied to it, or the time step
@@ -90,11 +92,12 @@ struct Case {
 /// jitter, minimum_spacing.
 std::vector<solver::Key> case_keys(const Case& c);
 
-/// The expectation for a scheme and field under these settings, or nullptr.
+/// The expectation for a scheme and field under these settings of case and scheme, or nullptr.
 const Expectation* find_expectation(const Case& c, std::string_view scheme, std::string_view field,
-                                    const solver::Settings& settings);
+                                    const solver::Settings& of_case, const solver::Settings& of_scheme);
 
 /// Whether all conditions hold.
-bool applies(std::span<const Condition> conditions, const solver::Settings& settings);
+bool applies(std::span<const Condition> conditions, const solver::Settings& of_case,
+             const solver::Settings& of_scheme);
 
 } // namespace sphvv::verification

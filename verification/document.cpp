@@ -147,6 +147,35 @@ Tree budget_tree(const Budget& budget) {
             {"internal_torque", if_any(budget.internal_torque)}};
 }
 
+Tree history_tree(const std::vector<Deviation>& history) {
+    Tree rows = Tree::array();
+    for (const Deviation& at : history) {
+        rows.push_back({{"time", at.time},
+                        {"l2_velocity", finite_or_null(at.velocity.l2)},
+                        {"l2_pressure", finite_or_null(at.pressure.l2)},
+                        {"maximum_speed", finite_or_null(at.maximum_speed)},
+                        {"maximum_speed_exact", finite_or_null(at.maximum_speed_exact)},
+                        {"energy_error", finite_or_null(at.energy_error)}});
+    }
+    return rows;
+}
+
+Tree picture_tree(const Picture& picture) {
+    const auto list = [](std::span<const double> values) {
+        Tree entries = Tree::array();
+        for (const double value : values) {
+            entries.push_back(finite_or_null(value));
+        }
+        return entries;
+    };
+    return {{"time", picture.time},
+            {"x", list(picture.x)},
+            {"y", list(picture.y)},
+            {"speed", list(picture.speed)},
+            {"pressure", list(picture.pressure)},
+            {"box", list(picture.box)}};
+}
+
 Tree run_tree(const LadderResult& result, const RunRecord& run) {
     Tree stages = Tree::array();
     for (const auto& stage : run.stages) {
@@ -163,23 +192,28 @@ Tree run_tree(const LadderResult& result, const RunRecord& run) {
     for (const auto& [key, value] : run.settings) {
         settings[key] = value;
     }
-    return {{"case", result.request.flow->name},
-            {"group", result.group},
-            {"scheme", run.scheme},
-            {"n", run.n},
-            {"seed", run.seed},
-            {"survived", run.survived},
-            {"diagnosis", run.diagnosis},
-            {"end_time", run.time},
-            {"setup_seconds", run.setup_seconds},
-            {"bytes_per_particle", run.bytes_per_particle},
-            {"energy_error", finite_or_null(run.energy_error)},
-            {"maximum_speed_error", finite_or_null(run.maximum_speed_error)},
-            {"minimum_spacing", finite_or_null(run.minimum_spacing)},
-            {"budget", budget_tree(run.budget)},
-            {"stages", stages},
-            {"fields", fields},
-            {"settings", settings}};
+    Tree tree{{"case", result.request.flow->name},
+              {"group", result.group},
+              {"scheme", run.scheme},
+              {"n", run.n},
+              {"seed", run.seed},
+              {"survived", run.survived},
+              {"diagnosis", run.diagnosis},
+              {"end_time", run.time},
+              {"setup_seconds", run.setup_seconds},
+              {"bytes_per_particle", run.bytes_per_particle},
+              {"energy_error", finite_or_null(run.energy_error)},
+              {"maximum_speed_error", finite_or_null(run.maximum_speed_error)},
+              {"minimum_spacing", finite_or_null(run.minimum_spacing)},
+              {"budget", budget_tree(run.budget)},
+              {"stages", stages},
+              {"fields", fields},
+              {"settings", settings},
+              {"history", history_tree(run.history)}};
+    if (run.picture) {
+        tree["picture"] = picture_tree(*run.picture);
+    }
+    return tree;
 }
 
 Tree front_tree(const LadderResult& result, const Front& front) {

@@ -82,8 +82,9 @@ Budget budget_since(const Stock<Dim>& start, const solver::Simulation<Dim>& simu
     return budget;
 }
 
+/// Holds the particles at their current positions against the exact solution at the current time.
 template <int Dim>
-void compare(const SceneRecord& scene, const solver::Simulation<Dim>& simulation, RunRecord& record) {
+Deviation compare(const SceneRecord& scene, const solver::Simulation<Dim>& simulation) {
     const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
     const analytic::Values values = solution_values(scene);
     const analytic::Evaluator exact = solution.bind(values);
@@ -121,16 +122,33 @@ void compare(const SceneRecord& scene, const solver::Simulation<Dim>& simulation
         ours.emplace_back(particles.velocity[d], count);
         theirs.emplace_back(velocity[d]);
     }
-    record.maximum_speed_error = maximum_speed(simulation) / std::sqrt(fastest) - 1;
-    record.energy_error = kinetic_energy(simulation) / (simulation.density * simulation.box.volume() *
-                                                        solution.kinetic_energy(values, simulation.time)) -
-                          1;
-    if (!record.survived) {
-        return;
+    return {.time = simulation.time,
+            .velocity = vector_norms(ours, theirs, volume),
+            .pressure =
+                scalar_norms_up_to_a_constant({(*particles.find("pressure"))[0], count}, pressure, volume),
+            .maximum_speed = maximum_speed(simulation),
+            .maximum_speed_exact = std::sqrt(fastest),
+            .energy_error = kinetic_energy(simulation) / (simulation.density * simulation.box.volume() *
+                                                          solution.kinetic_energy(values, simulation.time)) -
+                            1};
+}
+
+Picture picture_of(const solver::Simulation<2>& simulation) {
+    const auto& particles = simulation.particles;
+    const auto copy = [&](const double* values) {
+        return std::vector<double>(values, values + particles.size());
+    };
+    Picture picture{.time = simulation.time,
+                    .x = copy(particles.position[0]),
+                    .y = copy(particles.position[1]),
+                    .speed = copy(particles.velocity[0]),
+                    .pressure = copy((*particles.find("pressure"))[0]),
+                    .box = {simulation.box.low[0], simulation.box.high[0], simulation.box.low[1],
+                            simulation.box.high[1]}};
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        picture.speed[i] = std::hypot(particles.velocity[0][i], particles.velocity[1][i]);
     }
-    record.errors.push_back({"velocity", vector_norms(ours, theirs, volume)});
-    record.errors.push_back({"pressure", scalar_norms_up_to_a_constant(
-                                             {(*particles.find("pressure"))[0], count}, pressure, volume)});
+    return picture;
 }
 
 template <int Dim>
@@ -207,7 +225,7 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
                       const Progress& progress) {
     RunRecord record;
     const ThreadsFor threads(simulation.particles.size());
-    record.scheme = scene.scheme->name;
+    record.scheme = scene.label;
     record.n = scene.n;
     record.seed = scene.seed;
     record.h = simulation.smoothing_length;
@@ -217,6 +235,8 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     std::vector<double> time_steps;
     const Stock<Dim> start(simulation);
     record.survived = true;
+    constexpr int marks = 40;
+    int next_mark = 1;
     while (record.survived && simulation.time < simulation.end_time) {
         const auto step = WallClock::now();
         const std::clock_t cpu = std::clock();
@@ -231,6 +251,10 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
         record.cpu_seconds += static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
         record.minimum_spacing =
             std::min(record.minimum_spacing, simulation.neighbours.minimum_distance() / record.dx);
+        if (record.survived && simulation.time >= next_mark * simulation.end_time / marks) {
+            record.history.push_back(compare(scene, simulation));
+            next_mark = static_cast<int>(simulation.time / simulation.end_time * marks) + 1;
+        }
         if (record.survived && progress) {
             progress(simulation.time / simulation.end_time);
         }
@@ -241,7 +265,20 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     record.prescribed_time_step = scene.scheme_settings.number("time_step");
     record.work = simulation.work;
     record.budget = budget_since(start, simulation);
-    compare(scene, simulation, record);
+    if (record.history.empty() || record.history.back().time < simulation.time) {
+        record.history.push_back(compare(scene, simulation));
+    }
+    const Deviation& end = record.history.back();
+    record.maximum_speed_error = end.maximum_speed / end.maximum_speed_exact - 1;
+    record.energy_error = end.energy_error;
+    if (record.survived) {
+        record.errors = {{"velocity", end.velocity}, {"pressure", end.pressure}};
+    }
+    if constexpr (Dim == 2) {
+        if (scene.picture) {
+            record.picture = picture_of(simulation);
+        }
+    }
     describe(simulation, record);
     for (const solver::Settings* settings : {&scene.case_settings, &scene.scheme_settings}) {
         for (const solver::Key& key : settings->keys()) {

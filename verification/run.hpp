@@ -3,6 +3,7 @@
 #include "sphvv/verification/norms.hpp"
 #include "sphvv/verification/scene.hpp"
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,9 +33,28 @@ struct Budget {
     std::optional<double> internal_torque;
 };
 
-/// What one simulation left behind, apart from its particles.
+/// How far a run is from the exact solution at one time.
+struct Deviation {
+    double time = 0; ///< s
+    Norms velocity;
+    Norms pressure;
+    double maximum_speed = 0;       ///< m/s
+    double maximum_speed_exact = 0; ///< m/s, at the particles
+    double energy_error = 0;        ///< kinetic energy over the exact one, minus 1
+};
+
+/// The particles of a plane run at one time.
+struct Picture {
+    double time = 0;              ///< s
+    std::vector<double> x, y;     ///< m
+    std::vector<double> speed;    ///< m/s
+    std::vector<double> pressure; ///< Pa
+    std::array<double, 4> box{};  ///< m: low x, high x, low y, high y
+};
+
+/// What one simulation left behind.
 struct RunRecord {
-    std::string scheme;
+    std::string scheme; ///< label of the variant
     int n = 0;
     std::uint64_t seed = 1;
     double h = 0;
@@ -51,6 +71,8 @@ struct RunRecord {
     double energy_error = 0;         ///< kinetic energy over the exact one, minus 1, at the time reached
     double minimum_spacing = 0;      ///< smallest pair distance / dx over the whole run
     Budget budget;
+    std::vector<Deviation> history; ///< at every fortieth of the end time, and at the last step
+    std::optional<Picture> picture; ///< at the last step, where the scene asks for it
 
     double setup_seconds = 0;
     double seconds = 0;        ///< stepping wall time, median over the repeats

@@ -2,6 +2,7 @@
 
 #include "sphvv/analytic/solutions.hpp"
 #include "sphvv/solver/arrangements.hpp"
+#include "sphvv/verification/particle_sets.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,37 @@ solver::Box<Dim> box_of(const analytic::Domain& domain) {
     return box;
 }
 
+int tile_of(int dimension) {
+    return dimension == 2 ? settled_tile<2> : settled_tile<3>;
+}
+
+/// A settled tile is repeated in a cube.
+void check_settled(const SceneRecord& scene, const analytic::Domain& domain, int dimension,
+                   const std::string& where) {
+    const double length = scene.case_settings.number(scene.flow->reference_length);
+    for (int d = 0; d < dimension; ++d) {
+        if (std::abs(domain.high[d] - domain.low[d] - length) > 1e-9 * length) {
+            throw UserError(where + ": a settled start needs a box whose sides are all the reference length; "
+                                    "accepted: arrangement=lattice, arrangement=jittered");
+        }
+    }
+    if (scene.n % tile_of(dimension) != 0) {
+        throw UserError(where + ": a settled start repeats a tile of " + std::to_string(tile_of(dimension)) +
+                        " spacings; give a multiple of it");
+    }
+}
+
+template <int Dim>
+std::array<std::vector<double>, Dim> settled_points(const solver::Box<Dim>& box, const SceneRecord& scene) {
+    auto points = particle_set<Dim>(Arrangement::settled, scene.n, 0, scene.seed).points;
+    for (int d = 0; d < Dim; ++d) {
+        for (double& x : points[d]) {
+            x = box.low[d] + (box.high[d] - box.low[d]) * x;
+        }
+    }
+    return points;
+}
+
 } // namespace
 
 analytic::Values solution_values(const SceneRecord& scene) {
@@ -51,24 +83,60 @@ int dimension(const SceneRecord& scene) {
     return analytic::solutions::find(scene.flow->solution).dimension;
 }
 
-SceneRecord resolve_scene(const Case& flow, const solver::Scheme& scheme, const solver::Assignments& given,
-                          int n, std::span<const Key> also_known) {
+std::string Variant::label() const {
+    std::string text(scheme->name);
+    for (const auto& [key, value] : settings) {
+        text.append(":").append(key).append("=").append(value);
+    }
+    return text;
+}
+
+Variant variant_of(std::string_view text) {
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    Variant variant(&solver::schemes::find(text.substr(0, colon)));
+    for (std::size_t at = colon; at < text.size();) {
+        const std::size_t next = std::min(text.find(':', at + 1), text.size());
+        const std::string_view assignment = text.substr(at + 1, next - at - 1);
+        const std::size_t equals = assignment.find('=');
+        if (equals == std::string_view::npos || equals == 0 || equals + 1 == assignment.size()) {
+            throw UserError("scheme '" + std::string(text) + "': '" + std::string(assignment) +
+                            "' is not of the form KEY=VALUE; accepted: SCHEME[:KEY=VALUE…]");
+        }
+        const auto [key, value] = std::pair{assignment.substr(0, equals), assignment.substr(equals + 1)};
+        if (!variant.settings.emplace(std::string(key), std::string(value)).second) {
+            throw UserError("scheme '" + std::string(text) + "': the key '" + std::string(key) +
+                            "' is given twice");
+        }
+        at = next;
+    }
+    return variant;
+}
+
+SceneRecord resolve_scene(const Case& flow, const Variant& variant, const solver::Assignments& given, int n,
+                          std::span<const Key> also_known) {
+    const solver::Scheme& scheme = *variant.scheme;
     const std::vector<Key> of_case = case_keys(flow);
     solver::Assignments to_case;
     solver::Assignments to_scheme;
-    for (const auto& [key, value] : given) {
+    solver::Assignments all = variant.settings;
+    all.insert(given.begin(), given.end());
+    for (const auto& [key, value] : all) {
         if (declares(of_case, key)) {
             to_case[key] = value;
         } else if (declares(scheme.keys, key)) {
             to_scheme[key] = value;
-        } else if (!declares(also_known, key)) {
+        } else if (variant.settings.contains(key) || !declares(also_known, key)) {
             throw UserError("there is no key '" + key + "'; the case " + std::string(flow.name) + " takes " +
                             key_names(of_case) + "; the scheme " + std::string(scheme.name) + " takes " +
                             key_names(scheme.keys));
         }
     }
-    return {&flow, &scheme, solver::Settings(of_case, to_case), solver::Settings(scheme.keys, to_scheme),
-            n,     1};
+    return {.flow = &flow,
+            .scheme = &scheme,
+            .label = variant.label(),
+            .case_settings = solver::Settings(of_case, to_case),
+            .scheme_settings = solver::Settings(scheme.keys, to_scheme),
+            .n = n};
 }
 
 void check_scene(const SceneRecord& scene) {
@@ -90,6 +158,9 @@ void check_scene(const SceneRecord& scene) {
                 " dx each; give n >= " + shortest(std::ceil(2 * support / side * scene.n - 1e-9)));
         }
     }
+    if (scene.case_settings.word("arrangement") == "settled") {
+        check_settled(scene, domain, solution.dimension, where);
+    }
     if (particles > largest_particle_count) {
         throw UserError(where + " makes " + shortest(std::round(particles)) + " particles; at most " +
                         shortest(largest_particle_count) + " are accepted");
@@ -108,8 +179,9 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
     const solver::Kernel& kernel = solver::kernels::find(scene.scheme_settings.word("kernel"));
     check_scene(scene);
 
-    auto points = solver::lattice<Dim>(box, dx);
-    if (scene.case_settings.word("arrangement") == "jittered") {
+    const std::string& arrangement = scene.case_settings.word("arrangement");
+    auto points = arrangement == "settled" ? settled_points<Dim>(box, scene) : solver::lattice<Dim>(box, dx);
+    if (arrangement == "jittered") {
         solver::jitter<Dim>(points, scene.case_settings.number("jitter") * dx, scene.seed);
     }
     solver::Simulation<Dim> simulation(box, points[0].size());

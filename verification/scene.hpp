@@ -6,23 +6,44 @@
 #include "sphvv/verification/cases.hpp"
 
 #include <cstdint>
+#include <string>
+#include <utility>
 
 namespace sphvv::verification {
+
+/// A scheme with settings of its own, next to others on one ladder.
+struct Variant {
+    // Not explicit: a scheme is the variant of itself that has no settings of its own.
+    Variant(const solver::Scheme* of, solver::Assignments own = {}) : scheme(of), settings(std::move(own)) {}
+
+    const solver::Scheme* scheme;
+    solver::Assignments settings; ///< of the case or of the scheme
+
+    /// The text that variant_of() reads, e.g. "isph_dfs" or "isph_dfs:shift_correction=none".
+    std::string label() const;
+    bool operator==(const Variant&) const = default;
+};
+
+/// Reads SCHEME[:KEY=VALUE…]. Throws UserError for another form or an unknown scheme.
+Variant variant_of(std::string_view text);
 
 /// Everything that determines one simulation.
 struct SceneRecord {
     const Case* flow;
     const solver::Scheme* scheme;
+    std::string label; ///< under which its runs go: that of the variant
     solver::Settings case_settings;
     solver::Settings scheme_settings;
     int n;                  ///< particle spacings along the case's reference length
-    std::uint64_t seed = 1; ///< of a jittered start
+    std::uint64_t seed = 1; ///< of a jittered or settled start
+    bool picture = false;   ///< the run keeps its particles at the end
 };
 
-/// Sorts assignments to the case's and the scheme's keys. A key that neither has throws UserError naming both
-/// lists; `also_known` are keys to pass over, because another scheme of the same command takes them.
-SceneRecord resolve_scene(const Case& flow, const solver::Scheme& scheme, const solver::Assignments& given,
-                          int n, std::span<const solver::Key> also_known = {});
+/// Sorts assignments, and those of the variant, which win, to the case's and the scheme's keys. A key that
+/// neither has throws UserError naming both lists; `also_known` are keys to pass over, because another scheme
+/// of the same command takes them.
+SceneRecord resolve_scene(const Case& flow, const Variant& variant, const solver::Assignments& given, int n,
+                          std::span<const solver::Key> also_known = {});
 
 /// The parameters of the scene's exact solution.
 analytic::Values solution_values(const SceneRecord& scene);

@@ -11,13 +11,13 @@
 namespace sphvv::verification {
 namespace {
 
-constexpr int jittered_seeds = 5; // verification.md §3: at least five
+constexpr int seeds_of_random_starts = 5; // verification.md §3: at least five
 const std::vector<std::string> compared_fields{"velocity", "pressure"};
 
 std::string group_label(const LadderRequest& request, const SceneRecord& scene) {
     const std::string leading(request.flow->leading_key);
-    std::string label =
-        std::string(request.flow->name) + " " + leading + "=" + scene.case_settings.text(leading);
+    std::string label = (request.study.empty() ? std::string(request.flow->name) : request.study) + " " +
+                        leading + "=" + scene.case_settings.text(leading);
     for (const auto& [key, value] : request.settings) {
         if (key != leading) {
             label.append(" ").append(key).append("=").append(value);
@@ -171,15 +171,15 @@ std::map<double, std::vector<const RunRecord*>> rungs_of(std::span<const RunReco
     return rungs;
 }
 
-FieldStudy judge_field(const solver::Scheme& scheme, const std::string& field, Axis axis,
+FieldStudy judge_field(const std::string& label, const std::string& field, Axis axis,
                        std::optional<Expectation> expectation, std::span<const RunRecord> all_runs) {
     FieldStudy study{};
-    study.scheme = scheme.name;
+    study.scheme = label;
     study.field = field;
     study.axis = axis;
     study.expectation = std::move(expectation);
     std::vector<Rung> rungs;
-    for (const auto& [coarseness, runs] : rungs_of(all_runs, scheme.name, axis)) {
+    for (const auto& [coarseness, runs] : rungs_of(all_runs, label, axis)) {
         const Sample& sample = study.samples.emplace_back(sample_of(runs, field));
         if (sample.survived) {
             Rung& rung = rungs.emplace_back(Rung{abscissa(sample, axis), {}});
@@ -214,7 +214,8 @@ Expectation expectation_in_time(const solver::Scheme& scheme, const std::string&
             .where = {},
             .order = {theory.order - 0.2, theory.order + 0.3, theory.source},
             .text =
-                "differences from a run with a step 32 times finer than the finest, on the same particles"};
+                "differences from a run with a step 32 times finer than the finest, on the same particles",
+            .waiver = theory.waiver};
 }
 
 void check_time_ladder(const LadderRequest& request) {
@@ -230,8 +231,7 @@ void check_time_ladder(const LadderRequest& request) {
 std::vector<Front> fronts_of(const std::vector<FieldStudy>& studies) {
     std::vector<Front> fronts;
     for (const std::string& field : compared_fields) {
-        for (const auto& [cost, member] : {std::pair{"seconds", &Sample::seconds},
-                                           std::pair{"pair_evaluations", &Sample::pair_evaluations}}) {
+        for (const std::string cost : {"seconds", "work"}) {
             Front front{field, cost, {}, {}, {}};
             for (const FieldStudy& study : studies) {
                 CostCurve curve{study.scheme, {}, {}};
@@ -239,7 +239,9 @@ std::vector<Front> fronts_of(const std::vector<FieldStudy>& studies) {
                 for (const Sample& sample : study.samples) {
                     if (study.field == field && sample.norms) {
                         curve.error.push_back(sample.norms->l2);
-                        curve.cost.push_back(sample.*member);
+                        curve.cost.push_back(cost == "seconds"
+                                                 ? sample.seconds
+                                                 : sample.pair_evaluations + sample.matrix_entries);
                         n.push_back(sample.n);
                     }
                 }
@@ -259,27 +261,29 @@ std::vector<Front> fronts_of(const std::vector<FieldStudy>& studies) {
 
 std::vector<SceneRecord> plan(const LadderRequest& request) {
     std::vector<solver::Key> any_scheme;
-    for (const solver::Scheme* scheme : request.schemes) {
-        any_scheme.insert(any_scheme.end(), scheme->keys.begin(), scheme->keys.end());
+    for (const Variant& variant : request.schemes) {
+        const std::vector<solver::Key>& keys = variant.scheme->keys;
+        any_scheme.insert(any_scheme.end(), keys.begin(), keys.end());
     }
     std::vector<SceneRecord> scenes;
     if (!request.time_steps.empty()) {
         check_time_ladder(request);
     }
-    for (const solver::Scheme* scheme : request.schemes) {
+    for (const Variant& variant : request.schemes) {
         for (const double time_step : request.time_steps) { // on the same particles: one seed
             solver::Assignments settings = request.settings;
             settings["time_step"] = solver::shortest(time_step);
             scenes.push_back(
-                resolve_scene(*request.flow, *scheme, settings, request.ladder.front(), any_scheme));
+                resolve_scene(*request.flow, variant, settings, request.ladder.front(), any_scheme));
             check_scene(scenes.back());
         }
         for (const int n : request.time_steps.empty() ? request.ladder : std::vector<int>{}) {
-            SceneRecord scene = resolve_scene(*request.flow, *scheme, request.settings, n, any_scheme);
-            const bool random = scene.case_settings.word("arrangement") == "jittered";
+            SceneRecord scene = resolve_scene(*request.flow, variant, request.settings, n, any_scheme);
+            const bool random = scene.case_settings.word("arrangement") != "lattice";
             check_scene(scene);
-            for (int seed = 1; seed <= (random ? jittered_seeds : 1); ++seed) {
+            for (int seed = 1; seed <= (random ? seeds_of_random_starts : 1); ++seed) {
                 scene.seed = static_cast<std::uint64_t>(seed);
+                scene.picture = n == request.picture_at && seed == 1;
                 scenes.push_back(scene);
             }
         }
@@ -287,33 +291,25 @@ std::vector<SceneRecord> plan(const LadderRequest& request) {
     return scenes;
 }
 
-std::vector<FieldStudy> judge_runs(const Case& flow, const std::vector<const solver::Scheme*>& schemes,
-                                   const solver::Settings& case_settings, std::span<const RunRecord> runs) {
+std::vector<FieldStudy> judge_runs(std::span<const SceneRecord> scenes, std::span<const RunRecord> runs,
+                                   Axis axis) {
     std::vector<FieldStudy> studies;
-    for (const solver::Scheme* scheme : schemes) {
-        for (const std::string& field : compared_fields) {
-            const Expectation* expectation = find_expectation(flow, scheme->name, field, case_settings);
-            studies.push_back(judge_field(*scheme, field, Axis::space,
-                                          expectation == nullptr ? std::nullopt : std::optional(*expectation),
-                                          runs));
-        }
-    }
-    return studies;
-}
-
-std::vector<FieldStudy> judge_runs_in_time(std::span<const SceneRecord> scenes,
-                                           std::span<const RunRecord> runs) {
-    std::vector<FieldStudy> studies;
-    const solver::Scheme* judged = nullptr;
+    std::set<std::string> judged;
     for (const SceneRecord& scene : scenes) {
-        for (const std::string& field : compared_fields) {
-            if (scene.scheme != judged) {
-                studies.push_back(
-                    judge_field(*scene.scheme, field, Axis::time,
-                                expectation_in_time(*scene.scheme, field, scene.scheme_settings), runs));
-            }
+        if (!judged.insert(scene.label).second) {
+            continue;
         }
-        judged = scene.scheme;
+        for (const std::string& field : compared_fields) {
+            std::optional<Expectation> expectation;
+            if (axis == Axis::time) {
+                expectation = expectation_in_time(*scene.scheme, field, scene.scheme_settings);
+            } else if (const Expectation* found =
+                           find_expectation(*scene.flow, scene.scheme->name, field, scene.case_settings,
+                                            scene.scheme_settings)) {
+                expectation = *found;
+            }
+            studies.push_back(judge_field(scene.label, field, axis, std::move(expectation), runs));
+        }
     }
     return studies;
 }
@@ -361,7 +357,7 @@ LadderResult run_ladder(const LadderRequest& request, const LadderProgress& prog
     LadderResult result{request, group_label(request, scenes.front()), {}, {}, {}, {}};
     const auto tell = [&](const SceneRecord& scene) -> Progress {
         RunRecord announced;
-        announced.scheme = scene.scheme->name;
+        announced.scheme = scene.label;
         announced.n = scene.n;
         announced.seed = scene.seed;
         announced.prescribed_time_step = scene.scheme_settings.number("time_step");
@@ -382,16 +378,16 @@ LadderResult run_ladder(const LadderRequest& request, const LadderProgress& prog
         for (std::size_t first = 0; first < scenes.size(); first += rungs) {
             run_in_time(std::span(scenes).subspan(first, rungs), tell, keep);
         }
-        result.studies = judge_runs_in_time(scenes, result.runs);
+        result.studies = judge_runs(scenes, result.runs, Axis::time);
         return result;
     }
     for (const SceneRecord& scene : scenes) {
         keep(run_scene(scene, tell(scene)));
     }
-    result.studies = judge_runs(*request.flow, request.schemes, scenes.front().case_settings, result.runs);
+    result.studies = judge_runs(scenes, result.runs, Axis::space);
     result.fronts = fronts_of(result.studies);
     for (const Claim& claim : request.flow->claims) {
-        if (applies(claim.where, scenes.front().case_settings)) {
+        if (applies(claim.where, scenes.front().case_settings, scenes.front().scheme_settings)) {
             if (const auto finding = claim.measure(result.runs)) {
                 result.claims.push_back({&claim, *finding});
             }

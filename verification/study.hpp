@@ -13,11 +13,13 @@ namespace sphvv::verification {
 /// A ladder to be run: what a study record or a command line asks for.
 struct LadderRequest {
     const Case* flow;
-    std::vector<const solver::Scheme*> schemes;
+    std::vector<Variant> schemes;
     solver::Assignments settings;
     std::vector<int> ladder; ///< ascending
     std::string tier;        ///< "quick", "nightly", "full", or "command" for one given on the command line
     std::vector<double> time_steps{}; ///< s; not empty: a ladder in time at the one n of `ladder`
+    int picture_at = 0;               ///< the rung whose runs keep their particles; 0 for none
+    std::string study{};              ///< name of the study, empty for a ladder given on the command line
 };
 
 /// One rung of one scheme: the seeds' runs put together.
@@ -62,7 +64,7 @@ struct FieldStudy {
 /// Error against one kind of cost for all schemes of a ladder.
 struct Front {
     std::string field;
-    std::string cost; ///< "seconds" or "pair_evaluations"
+    std::string cost; ///< "seconds" or "work": pair evaluations and matrix entries
     std::vector<std::vector<int>> n;
     std::vector<CostCurve> curves;
     std::vector<FrontRow> rows;
@@ -76,7 +78,7 @@ struct ClaimFinding {
 /// Everything that came of one LadderRequest.
 struct LadderResult {
     LadderRequest request;
-    std::string group; ///< the case with the settings that tell this ladder apart
+    std::string group; ///< study or case, with the settings that tell this ladder apart
     std::vector<RunRecord> runs;
     std::vector<FieldStudy> studies;
     std::vector<Front> fronts;
@@ -93,13 +95,10 @@ std::vector<SceneRecord> plan(const LadderRequest& request);
 /// times finer than their finest, particle by particle.
 LadderResult run_ladder(const LadderRequest& request, const LadderProgress& progress = {});
 
-/// The judgement alone, of runs that were made before: this is what turns samples into verdicts.
-std::vector<FieldStudy> judge_runs(const Case& flow, const std::vector<const solver::Scheme*>& schemes,
-                                   const solver::Settings& case_settings, std::span<const RunRecord> runs);
-
-/// The same of a ladder in time: each scheme must show the order that it declares.
-std::vector<FieldStudy> judge_runs_in_time(std::span<const SceneRecord> scenes,
-                                           std::span<const RunRecord> runs);
+/// The judgement alone, of runs that were made before: this is what turns samples into verdicts. In time,
+/// each scheme must show the order that it declares.
+std::vector<FieldStudy> judge_runs(std::span<const SceneRecord> scenes, std::span<const RunRecord> runs,
+                                   Axis axis);
 
 /// Exit status of a ladder (cli.md): 0; 1 a verdict failed, or is inconclusive, without a waiver; 3 a run
 /// ended early unexpectedly.

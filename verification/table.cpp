@@ -65,8 +65,9 @@ std::string front_table(const std::vector<Front>& fronts) {
     MarkdownTable table({"field", "cost", "scheme", "front", "slower by", "at error", "than"});
     for (const Front& front : fronts) {
         for (const FrontRow& row : front.rows) {
-            table.add({front.field, front.cost == "seconds" ? "seconds" : "pair evaluations", row.name,
-                       row.on_front ? "yes" : "no", row.slower_by ? number(*row.slower_by, "%.3g×") : dash,
+            table.add({front.field, front.cost == "seconds" ? "seconds" : "work (pairs and matrix entries)",
+                       row.name, row.on_front ? "yes" : "no",
+                       row.slower_by ? number(*row.slower_by, "%.3g×") : dash,
                        std::isfinite(row.at_error) ? number(row.at_error, "%.3e") : dash,
                        row.than.empty() ? dash : row.than});
         }

@@ -1,5 +1,6 @@
 // From samples to verdicts, without running anything: synthetic runs with a known answer.
 #include "sphvv/analytic/solutions.hpp"
+#include "sphvv/verification/claims.hpp"
 #include "sphvv/verification/document.hpp"
 #include "sphvv/verification/scene.hpp"
 #include "sphvv/verification/study.hpp"
@@ -16,6 +17,13 @@ namespace {
 
 const solver::Scheme& scheme(const char* name) {
     return solver::schemes::find(name);
+}
+
+const Expectation* expectation_of(const char* name, const char* field,
+                                  const solver::Assignments& given = {}) {
+    const SceneRecord scene =
+        resolve_scene(cases::find("taylor_green"), &solver::schemes::find(name), given, 20);
+    return find_expectation(*scene.flow, name, field, scene.case_settings, scene.scheme_settings);
 }
 
 solver::Settings settings_of(const Case& flow, const solver::Assignments& given = {}) {
@@ -50,7 +58,8 @@ std::vector<RunRecord> synthetic_runs(const std::string& name, const std::vector
 /// The verdict on the velocity of isph_dfs on taylor_green at Re = 100 for these runs.
 FieldStudy judged(const std::vector<RunRecord>& runs, const char* name = "isph_dfs") {
     const Case& flow = cases::find("taylor_green");
-    return judge_runs(flow, {&scheme(name)}, settings_of(flow), runs).front();
+    const SceneRecord scene = resolve_scene(flow, &scheme(name), {}, 20);
+    return judge_runs({&scene, 1}, runs, Axis::space).front();
 }
 
 LadderResult result_of(FieldStudy study) {
@@ -146,13 +155,13 @@ FieldStudy judged_in_time(double observed_order) {
     std::vector<SceneRecord> scenes;
     std::vector<RunRecord> runs;
     for (const double dt : {0.008, 0.004, 0.002, 0.001, 0.0005}) {
-        scenes.push_back(resolve_scene(cases::find("taylor_green"), scheme("isph_df"),
+        scenes.push_back(resolve_scene(cases::find("taylor_green"), &scheme("isph_df"),
                                        {{"time_step", solver::shortest(dt)}}, 20));
         runs.push_back(
             synthetic_runs("isph_df", {20}, [&](double) { return std::pow(dt, observed_order); }).front());
         runs.back().time_step = runs.back().prescribed_time_step = dt;
     }
-    return judge_runs_in_time(scenes, runs).front();
+    return judge_runs(scenes, runs, Axis::time).front();
 }
 
 TEST(LaddersInTime, DemandTheOrderThatTheSchemeDeclares) {
@@ -176,6 +185,87 @@ TEST(LaddersInTime, TakeOneResolutionAndSetTheStepThemselves) {
     EXPECT_THROW(plan(request), UserError);
 }
 
+TEST(Variants, ReadBackAsTheirLabel) {
+    EXPECT_EQ(variant_of("isph_dfs").label(), "isph_dfs");
+    const Variant variant = variant_of("isph_dfs:shift_correction=none:arrangement=settled");
+    EXPECT_EQ(variant.scheme, &scheme("isph_dfs"));
+    EXPECT_EQ(variant.settings,
+              (solver::Assignments{{"arrangement", "settled"}, {"shift_correction", "none"}}));
+    EXPECT_EQ(variant_of(variant.label()), variant);
+    for (const char* wrong : {"isph_dfs:", "isph_dfs:a", "isph_dfs:=1", "isph_dfs:a=", "isph_dfs:a=1:a=2",
+                              "no_scheme", "", ":a=1"}) {
+        EXPECT_THROW(variant_of(wrong), UserError) << wrong;
+    }
+}
+
+// Its own settings win over those of the ladder, reach case and scheme, and must exist there.
+TEST(Variants, SetWhatTheirScenesAreMadeOf) {
+    const Case& flow = cases::find("taylor_green");
+    LadderRequest request{&flow,
+                          {&scheme("isph_dfs"), variant_of("isph_dfs:re=10:h_over_dx=1.5")},
+                          {{"re", "100"}},
+                          {20, 40},
+                          "command"};
+    const std::vector<SceneRecord> scenes = plan(request);
+    ASSERT_EQ(scenes.size(), 4U);
+    EXPECT_EQ(scenes[0].label, "isph_dfs");
+    EXPECT_EQ(scenes[0].case_settings.number("re"), 100);
+    EXPECT_EQ(scenes[2].label, "isph_dfs:h_over_dx=1.5:re=10");
+    EXPECT_EQ(scenes[2].case_settings.number("re"), 10);
+    EXPECT_EQ(scenes[2].scheme_settings.number("h_over_dx"), 1.5);
+    request.schemes = {variant_of("isph_dfs:gamma=7"), &scheme("wcsph")};
+    EXPECT_THROW(plan(request), UserError) << "a key of another scheme of the ladder";
+}
+
+// The expectations of a scheme hold for the variants that their conditions admit.
+TEST(Variants, AreJudgedApartUnderTheirLabels) {
+    const Case& flow = cases::find("taylor_green");
+    const char* euler = "isph_mls:integrator=euler";
+    const std::vector<SceneRecord> scenes{resolve_scene(flow, &scheme("isph_mls"), {}, 20),
+                                          resolve_scene(flow, variant_of(euler), {}, 20)};
+    std::vector<RunRecord> runs =
+        synthetic_runs("isph_mls", {20, 40, 80, 160}, [](double h) { return h * h; });
+    const auto slower = synthetic_runs(euler, {20, 40, 80, 160}, [](double h) { return h; });
+    runs.insert(runs.end(), slower.begin(), slower.end());
+    const std::vector<FieldStudy> studies = judge_runs(scenes, runs, Axis::space);
+    ASSERT_EQ(studies.size(), 4U);
+    EXPECT_EQ(studies[0].scheme, "isph_mls");
+    EXPECT_EQ(studies[0].verdict, "PASS") << studies[0].reason;
+    EXPECT_NEAR(studies[0].fit->order, 2, 1e-9);
+    EXPECT_EQ(studies[2].scheme, euler);
+    EXPECT_EQ(studies[2].verdict, "PASS") << studies[2].reason;
+    EXPECT_NEAR(studies[2].fit->order, 1, 1e-9);
+    EXPECT_FALSE(studies[3].expectation) << "nothing is derived for the pressure of Euler's";
+}
+
+TEST(Claims, MeasureOrdersAndWork) {
+    std::vector<RunRecord> runs = synthetic_runs("a", {10, 20, 40, 80, 160}, [](double h) { return h * h; });
+    for (RunRecord& run : runs) {
+        run.work.pair_evaluations = 70 * run.n;
+        run.work.matrix_entries = 30 * run.n;
+    }
+    EXPECT_NEAR(*fitted_order(runs, "a", "velocity", 10), 2, 1e-9);
+    EXPECT_FALSE(fitted_order(runs, "a", "velocity", 20)) << "four rungs of five";
+    EXPECT_NEAR(*fitted_order(runs, "a", "velocity", 20, 4), 2, 1e-9);
+    EXPECT_FALSE(fitted_order(runs, "b", "velocity", 10));
+    const double h = 1.3 / 30; // between the rungs
+    EXPECT_NEAR(*work_at_error(runs, "a", h * h), 3000, 1e-6);
+    EXPECT_FALSE(work_at_error(runs, "a", 1)) << "no extrapolation to coarser rungs";
+    EXPECT_FALSE(work_at_error(runs, "a", 1e-9));
+    std::vector<RunRecord> seeds;
+    for (const RunRecord& run : runs) {
+        for (const int seed : {1, 2}) {
+            seeds.push_back(run);
+            seeds.back().seed = static_cast<std::uint64_t>(seed);
+            seeds.back().errors[0].norms.l2 *= seed;
+        }
+    }
+    EXPECT_NEAR(*fitted_order(seeds, "a", "velocity", 10), 2, 1e-9) << "seeds are not rungs";
+    EXPECT_NEAR(*work_at_error(seeds, "a", h * h), 3000, 1e-6);
+    runs[2].survived = false;
+    EXPECT_FALSE(fitted_order(runs, "a", "velocity", 10));
+}
+
 // Real runs of two integrators of the same equations: their orders are known, and they are told apart.
 TEST(LaddersInTime, TellAFirstOrderIntegratorFromASecondOrderOne) {
     for (const auto& [integrator, order] : {std::pair{"explicit", 1.}, {"predictor_corrector", 2.}}) {
@@ -197,8 +287,7 @@ TEST(LaddersInTime, TellAFirstOrderIntegratorFromASecondOrderOne) {
 
 // house.md §7.8: a waiver changes the exit status only, and is printed wherever the verdict is.
 TEST(Verdicts, WaiverIsPrintedWithTheFailure) {
-    Expectation waived = *find_expectation(cases::find("taylor_green"), "isph_dfs", "velocity",
-                                           settings_of(cases::find("taylor_green")));
+    Expectation waived = *expectation_of("isph_dfs", "velocity");
     waived.waiver = "known: issue 0";
     FieldStudy study = judged(synthetic_runs("isph_dfs", ladder, [](double h) { return std::sqrt(h); }));
     study.expectation = waived;
@@ -214,10 +303,8 @@ TEST(Verdicts, WaiverIsPrintedWithTheFailure) {
 
 // A waiver for one start arrangement must not reach the others.
 TEST(Verdicts, AConditionOnAWordHoldsForThatWordOnly) {
-    const Case& flow = cases::find("taylor_green");
-    const solver::Settings jittered(case_keys(flow), {{"arrangement", "jittered"}});
-    EXPECT_FALSE(find_expectation(flow, "wcsph", "velocity", jittered)->waiver.empty());
-    EXPECT_TRUE(find_expectation(flow, "wcsph", "velocity", settings_of(flow))->waiver.empty());
+    EXPECT_FALSE(expectation_of("wcsph", "velocity", {{"arrangement", "jittered"}})->waiver.empty());
+    EXPECT_TRUE(expectation_of("wcsph", "velocity")->waiver.empty());
 }
 
 // Non-convergence that theory predicts passes, but never reads as accuracy.
@@ -254,9 +341,9 @@ TEST(Cases, EveryExpectationHasBandReasonAndSource) {
             EXPECT_FALSE(e.order.source.empty());
             EXPECT_FALSE(e.text.empty());
             EXPECT_EQ(e.ends_early, !e.order.low && !e.order.high);
-            EXPECT_NO_THROW(solver::schemes::find(e.scheme));
+            const solver::Settings of_scheme(solver::schemes::find(e.scheme).keys, {});
             for (const Condition& condition : e.where) {
-                EXPECT_NO_THROW(applies({&condition, 1}, settings_of(*flow)));
+                EXPECT_NO_THROW(applies({&condition, 1}, settings_of(*flow), of_scheme));
             }
         }
     }
@@ -285,7 +372,7 @@ TEST(Cases, EveryStudyCanBePlanned) {
         for (const Study& study : flow->studies) {
             LadderRequest request{flow, {}, study.settings, study.ladder, "quick", study.time_steps};
             for (const std::string& name : study.schemes) {
-                request.schemes.push_back(&scheme(name.c_str()));
+                request.schemes.push_back(variant_of(name));
             }
             EXPECT_NO_THROW(plan(request)) << study.name;
             EXPECT_FALSE(study.cost.empty());
@@ -308,7 +395,7 @@ TEST(Cases, TheListMatchesTheFiles) {
 
 TEST(Scenes, WrongKeyNamesWhatBothTake) {
     try {
-        resolve_scene(cases::find("taylor_green"), scheme("wcsph"), {{"reynolds", "100"}}, 20);
+        resolve_scene(cases::find("taylor_green"), &scheme("wcsph"), {{"reynolds", "100"}}, 20);
         FAIL();
     } catch (const UserError& error) {
         const std::string text = error.what();
@@ -319,7 +406,7 @@ TEST(Scenes, WrongKeyNamesWhatBothTake) {
 }
 
 TEST(Scenes, TooCoarseNamesTheSmallestResolution) {
-    SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_dfs"), {}, 7);
+    SceneRecord scene = resolve_scene(cases::find("taylor_green"), &scheme("isph_dfs"), {}, 7);
     EXPECT_THROW(check_scene(scene), UserError); // 2 x 3.9 dx does not fit into 7 dx
     scene.n = 8;
     EXPECT_NO_THROW(check_scene(scene));
@@ -337,7 +424,7 @@ TEST(Scenes, TooCoarseNamesTheSmallestResolution) {
 // The probe compares at the current positions and time: particles that carry the exact solution have no
 // error.
 TEST(Runs, StartIsExactAndErrorsAreReported) {
-    SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_dfs"),
+    SceneRecord scene = resolve_scene(cases::find("taylor_green"), &scheme("isph_dfs"),
                                       {{"end_time", "0.02"}, {"arrangement", "jittered"}}, 16);
     const RunRecord run = run_scene(scene);
     ASSERT_TRUE(run.survived) << run.diagnosis;
@@ -352,7 +439,7 @@ TEST(Runs, StartIsExactAndErrorsAreReported) {
 }
 
 TEST(Runs, DifferentSeedsDifferAndTheSameSeedRepeats) {
-    SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("wcsph"),
+    SceneRecord scene = resolve_scene(cases::find("taylor_green"), &scheme("wcsph"),
                                       {{"end_time", "0.01"}, {"arrangement", "jittered"}}, 12);
     const double first = run_scene(scene).errors[0].norms.l2;
     EXPECT_EQ(first, run_scene(scene).errors[0].norms.l2);
@@ -366,7 +453,7 @@ TEST(Runs, BudgetsOfMomentumEnergyAndTorque) {
     const auto run = [](const char* of, const solver::Assignments& more) {
         solver::Assignments given{{"end_time", "0.05"}, {"arrangement", "jittered"}, {"re", "1000"}};
         given.insert(more.begin(), more.end());
-        return run_scene(resolve_scene(cases::find("taylor_green"), scheme(of), given, 20));
+        return run_scene(resolve_scene(cases::find("taylor_green"), &scheme(of), given, 20));
     };
     const RunRecord variational = run("wcsph", {{"integrator", "predictor_corrector"}});
     const Budget& budget = variational.budget;
@@ -411,21 +498,108 @@ TEST(Runs, BudgetsStandInTheDocument) {
         R"("elastic_energy_start":null,"elastic_energy_end":2.0,"energy_drift":null,"internal_torque":0.5})");
 }
 
+TEST(Fronts, WorkIsPairEvaluationsAndMatrixEntries) {
+    const LadderRequest request{&cases::find("taylor_green"),
+                                {&scheme("isph_df"), &scheme("wcsph")},
+                                {{"re", "10"}, {"end_time", "0.01"}},
+                                {12, 16},
+                                "command"};
+    const LadderResult result = run_ladder(request);
+    ASSERT_EQ(result.fronts.size(), 4U); // two fields, two costs
+    EXPECT_EQ(result.fronts[0].cost, "seconds");
+    const Front& front = result.fronts[1];
+    EXPECT_EQ(front.cost, "work");
+    ASSERT_EQ(front.curves.size(), 2U);
+    for (std::size_t scheme_index = 0; scheme_index < 2; ++scheme_index) {
+        for (std::size_t rung = 0; rung < 2; ++rung) {
+            const RunRecord& run = result.runs[2 * scheme_index + rung];
+            EXPECT_EQ(front.curves[scheme_index].cost[rung], work_of(run));
+            EXPECT_EQ(run.work.matrix_entries > 0, scheme_index == 0);
+        }
+    }
+}
+
+// A settled start: the tile of the seed, which must fit the box.
+TEST(Runs, SettledStartsRepeatATile) {
+    const Case& flow = cases::find("taylor_green");
+    const SceneRecord scene = resolve_scene(flow, &scheme("isph_dfs"), {{"arrangement", "settled"}}, 40);
+    const solver::Simulation<2> simulation = build_scene<2>(scene);
+    ASSERT_EQ(simulation.particles.size(), 1600U);
+    solver::Simulation<2> lattice = build_scene<2>(resolve_scene(flow, &scheme("isph_dfs"), {}, 40));
+    EXPECT_NE(simulation.particles.position.components, lattice.particles.position.components);
+    const solver::Box<2>& box = simulation.box;
+    std::array<double, 2> mean{};
+    for (std::size_t i = 0; i < simulation.particles.size(); ++i) {
+        for (int d = 0; d < 2; ++d) {
+            const double x = simulation.particles.position.components[d][i];
+            ASSERT_GE(x, box.low[d]);
+            ASSERT_LT(x, box.high[d]);
+            mean[d] += (x - box.low[d]) / 1600;
+        }
+    }
+    EXPECT_NEAR(mean[0], 0.5, 0.02) << "the whole box is filled";
+    EXPECT_NEAR(mean[1], 0.5, 0.02);
+    SceneRecord other = scene;
+    other.seed = 2;
+    EXPECT_NE(build_scene<2>(other).particles.position.components, simulation.particles.position.components);
+    other.n = 30;
+    EXPECT_THROW(check_scene(other), UserError) << "no multiple of the tile";
+    EXPECT_EQ(plan({&flow, {&scheme("isph_dfs")}, {{"arrangement", "settled"}}, {20}, "command"}).size(), 5U);
+}
+
+// Forty marks and the end; the last entry is what the errors are taken from.
+TEST(Runs, KeepTheirHistoryAndWhereAskedTheirParticles) {
+    SceneRecord scene = resolve_scene(cases::find("taylor_green"), &scheme("wcsph"),
+                                      {{"end_time", "0.5"}, {"minimum_spacing", "0"}}, 12);
+    scene.picture = true;
+    const RunRecord run = run_scene(scene);
+    ASSERT_TRUE(run.survived) << run.diagnosis;
+    ASSERT_GE(run.history.size(), 20U);
+    ASSERT_LE(run.history.size(), 41U);
+    for (std::size_t k = 1; k < run.history.size(); ++k) {
+        EXPECT_GT(run.history[k].time, run.history[k - 1].time);
+    }
+    EXPECT_EQ(run.history.back().time, run.time);
+    EXPECT_EQ(run.history.back().velocity.l2, run.errors[0].norms.l2);
+    EXPECT_EQ(run.history.back().pressure.l2, run.errors[1].norms.l2);
+    EXPECT_DOUBLE_EQ(run.history.back().maximum_speed / run.history.back().maximum_speed_exact - 1,
+                     run.maximum_speed_error);
+    ASSERT_TRUE(run.picture);
+    EXPECT_EQ(run.picture->time, run.time);
+    EXPECT_EQ(run.picture->x.size(), 144U);
+    EXPECT_EQ(run.picture->pressure.size(), 144U);
+    EXPECT_EQ(*std::max_element(run.picture->speed.begin(), run.picture->speed.end()),
+              run.history.back().maximum_speed);
+    scene.picture = false;
+    EXPECT_FALSE(run_scene(scene).picture);
+
+    LadderResult result = result_of(judged(synthetic_runs("isph_dfs", ladder, [](double h) { return h; })));
+    result.runs = {run};
+    const LadderResult results[] = {result};
+    const auto document = result_document("sphvv verify", current_provenance(), 1, results);
+    EXPECT_EQ(document["runs"][0]["history"].size(), run.history.size());
+    EXPECT_EQ(document["runs"][0]["history"].back()["l2_velocity"], run.errors[0].norms.l2);
+    EXPECT_EQ(document["runs"][0]["picture"]["x"].size(), 144U);
+    EXPECT_EQ(document["runs"][0]["picture"]["box"], (std::vector<double>{-0.5, 0.5, -0.5, 0.5}));
+}
+
+// A run that ends early keeps its last state.
 TEST(Runs, ALostArrangementEndsTheRunWithItsDiagnosis) {
-    const SceneRecord scene = resolve_scene(cases::find("taylor_green"), scheme("isph_df"), {}, 40);
+    const SceneRecord scene = resolve_scene(cases::find("taylor_green"), &scheme("isph_df"), {}, 40);
     const RunRecord run = run_scene(scene);
     EXPECT_FALSE(run.survived);
     EXPECT_LT(run.time, 0.5);
     EXPECT_NE(run.diagnosis.find("particle"), std::string::npos) << run.diagnosis;
     EXPECT_NE(run.diagnosis.find("t = "), std::string::npos) << run.diagnosis;
     EXPECT_TRUE(run.errors.empty());
+    EXPECT_EQ(run.history.back().time, run.time);
 }
 
 // verification.md §12: what each scheme's periodic scene carries, and nothing else.
 TEST(Runs, ScenesAreLean) {
     const auto names = [](const char* of) {
         SceneRecord scene =
-            resolve_scene(cases::find("taylor_green"), scheme(of), {{"end_time", "0.01"}}, 12);
+            resolve_scene(cases::find("taylor_green"), &scheme(of), {{"end_time", "0.01"}}, 12);
         const RunRecord run = run_scene(scene);
         std::set<std::string> fields;
         for (const auto& field : run.fields) {
