@@ -1,5 +1,6 @@
 """The pictures of a report, drawn by matplotlib as small deterministic SVG: text stays text, no date, no metadata."""
 
+import base64
 import html
 import io
 import math
@@ -12,14 +13,16 @@ import matplotlib
 matplotlib.use("Agg")
 from matplotlib.figure import Figure as Canvas
 from matplotlib.lines import Line2D
+from PIL import Image
 
 from . import numbers
 from .findings import expectation, fitted_order, STATUSES, status
 
 # Okabe & Ito (2008), told apart with any colour vision; yellow left out, since it vanishes on white.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#AA4499", "#E69F00", "#56B4E9", "#000000"]
-MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h"]
-LINES = ["-", "--", "-.", ":"]
+# No cross: that is a run that ended early. No dotted line: that is the edge of an expected band.
+MARKERS = ["o", "s", "^", "D", "v", "P", "*", "<", ">", "p", "d"]
+LINES = ["-", (0, (4, 1.5)), (0, (6, 1.5, 1, 1.5)), (0, (3, 1, 1, 1, 1, 1))]
 
 STYLE = {"font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"], "font.size": 8.5,
          "axes.titlesize": 9.5, "axes.titleweight": "bold", "axes.labelsize": 8.5, "xtick.labelsize": 8, "ytick.labelsize": 8,
@@ -30,7 +33,7 @@ WIDTH = 4.7  # inches: legible at the width of a phone, and two fit side by side
 PLOT_HEIGHT = 2.75
 FIELD_UNITS = {"velocity": "m/s", "pressure": "Pa"}
 NORM_TITLES = {"l1": "L1", "l2": "L2", "linf": "L∞"}
-COSTS = {"seconds": "run time [s]", "pair_evaluations": "pair evaluations", "nanoseconds": "time of one application [ns]"}
+COSTS = {"seconds": "run time [s]", "work": "work (pairs + matrix entries)", "pair_evaluations": "pair evaluations", "nanoseconds": "time of one application [ns]"}
 SPACINGS = {"h": "smoothing length h [m]", "dx": "particle spacing dx [m]", "dt": "time step Δt [s]"}
 
 
@@ -47,18 +50,23 @@ class Look:
     """How one scheme is drawn, the same on every figure of a report."""
     colour: str
     marker: str
-    line: str
+    line: object  # a line style of matplotlib
 
 
 def looks(schemes):
-    """Colour, marker and line of each scheme; the markers differ even where the colours come round again."""
-    return {scheme: Look(COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)], LINES[i // len(COLOURS) % len(LINES)])
+    """Colour, marker and line of each scheme. The numbers of them share no divisor: where one comes round again, the others differ."""
+    return {scheme: Look(COLOURS[i % len(COLOURS)], MARKERS[i % len(MARKERS)], LINES[i % len(LINES)])
             for i, scheme in enumerate(schemes)}
 
 
 def plain(text):
     """Text that matplotlib does not read as mathematics."""
     return " ".join(str(text).split()).replace("$", r"\$")
+
+
+def plain_lines(text):
+    """The same of a text that was broken into lines."""
+    return "\n".join(map(plain, text.split("\n")))
 
 
 # ------------------------------------------------------------------------------------------------------- axes
@@ -111,27 +119,68 @@ def rung_ticks(values):
     return kept
 
 
-def new_axes(title, x_label, y_label, legend_rows):
-    """Canvas and axes with room for a legend of so many rows below."""
-    height = PLOT_HEIGHT + 1.2 + 0.19 * legend_rows
+def new_canvas(title, panels, legend_lines):
+    """Canvas with so many axes one below the other, and room for a legend of so many lines below."""
+    legend = 0.08 + LINE_HEIGHT * legend_lines
+    height = 0.36 + panels * (PLOT_HEIGHT + 0.42) + 0.42 + legend
     canvas = Canvas(figsize=(WIDTH, height))
-    axes = canvas.add_axes([0.66 / WIDTH, (0.72 + 0.19 * legend_rows) / height, (WIDTH - 0.78) / WIDTH, PLOT_HEIGHT / height])
+    bottoms = [0.72 + legend + (PLOT_HEIGHT + 0.42) * index for index in reversed(range(panels))]
+    every = [canvas.add_axes([0.66 / WIDTH, bottom / height, (WIDTH - 0.78) / WIDTH, PLOT_HEIGHT / height]) for bottom in bottoms]
+    canvas.text(0.08 / WIDTH, 1 - 0.13 / height, plain(title), ha="left", va="center", fontsize=9, fontweight="bold")
+    for axes in every:
+        axes.grid(True, color="#e3e3e3", linewidth=0.6)
+        axes.set_axisbelow(True)
+    return canvas, every
+
+
+def label_above(axes, text):
+    """Names the vertical axis: a horizontal label above it reads easier than a vertical one."""
+    axes.text(-0.12, 1.035, plain(text), transform=axes.transAxes, ha="left", va="bottom", fontsize=8, color="#333333")
+
+
+def new_axes(title, x_label, y_label, legend_lines):
+    """Canvas and logarithmic axes with room for a legend of so many lines below."""
+    canvas, [axes] = new_canvas(title, 1, legend_lines)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    canvas.text(0.08 / WIDTH, 1 - 0.13 / height, plain(title), ha="left", va="center", fontsize=9, fontweight="bold")
     axes.set_xlabel(plain(x_label))
-    # A horizontal label above the axis reads easier than a vertical one.
-    axes.set_ylabel("")
-    axes.text(-0.12, 1.035, plain(y_label), transform=axes.transAxes, ha="left", va="bottom", fontsize=8, color="#333333")
-    axes.grid(True, color="#e3e3e3", linewidth=0.6)
-    axes.set_axisbelow(True)
+    label_above(axes, y_label)
     return canvas, axes
 
 
 def add_legend(canvas, handles):
     height = canvas.get_figheight()
     canvas.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.02, 0.21 / height), frameon=False,
-                  borderpad=0, labelspacing=0.35, handlelength=2.2, borderaxespad=0)
+                  borderpad=0, labelspacing=0.5, handlelength=2.6, borderaxespad=0)
+
+
+LINE_HEIGHT = 0.165  # inches, of a legend
+LEGEND_LETTERS = 64  # that the width of a picture holds
+
+
+BREAKS = r"\s,:="  # a line may end after them
+
+
+def wrapped(text, letters=LEGEND_LETTERS):
+    """The text in lines of so many letters."""
+    lines = [""]
+    for part in re.findall(rf"[^{BREAKS}]{{1,{letters - 1}}}[{BREAKS}]*|[{BREAKS}]+", str(text)):
+        if lines[-1] and len(lines[-1]) + len(part.rstrip()) > letters:
+            lines.append("")
+        lines[-1] += part
+    return "\n".join(line.strip() for line in lines)
+
+
+def named(scheme, *texts):
+    """A label: the scheme and the first of the texts that fits beside it; where none does, the first that fits below it."""
+    beside = [f"{scheme}: {text}" if text else scheme for text in texts]
+    below = next((text for text in texts if len(text) <= LEGEND_LETTERS), texts[-1])
+    return next((line for line in beside if len(line) <= LEGEND_LETTERS),
+                "\n".join(filter(None, [wrapped(scheme + (":" if below else "")), wrapped(below)])))
+
+
+def line_count(labels):
+    return sum(label.count("\n") + 1 for label in labels)
 
 
 def sentence(text):
@@ -153,16 +202,29 @@ def shorten(text, length):
     return text if len(text) <= length else text[: length - 1] + "…"
 
 
-def finish(canvas, name, title, description, stamp):
-    """The SVG of a canvas, stamped with the source revision, with unique ids, a title and a description."""
+def with_palette(encoded):
+    """A picture of pixels with 256 colours, where that is smaller: a quarter of its size for particles, which have few."""
+    original = base64.b64decode(encoded)
+    stream = io.BytesIO()
+    Image.open(io.BytesIO(original)).quantize(256, method=Image.Quantize.FASTOCTREE).save(stream, "png", optimize=True)
+    return base64.b64encode(min(original, stream.getvalue(), key=len)).decode("ascii")
+
+
+def finish(canvas, name, title, description, stamp, dots_per_inch=100):
+    """The SVG of a canvas, stamped with the source revision, with unique ids, a title and a description.
+
+    dots_per_inch: of what is drawn as pixels.
+    """
     canvas.text(0.995, 0.06 / canvas.get_figheight(), plain(stamp), ha="right", va="bottom", fontsize=6.5, color="#666666")
     stream = io.StringIO()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # letters that DejaVu lacks stay text; the reader's font has them
-        canvas.savefig(stream, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+        canvas.savefig(stream, format="svg", dpi=dots_per_inch, metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     svg = stream.getvalue()
     svg = svg[svg.index("<svg"):]
     svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.S)
+    # Panels of equal pixels would have equal ids, which nothing refers to.
+    svg = re.sub(r'(?<=data:image/png;base64,)([^"]+)" id="image[0-9a-f]+"', lambda match: with_palette(match.group(1)) + '"', svg)
     # Several pictures share one page: their ids must not meet.
     prefix = re.sub(r"[^A-Za-z0-9]+", "-", name) + "-"
     svg = re.sub(r'\bid="', f'id="{prefix}', svg)
@@ -211,7 +273,7 @@ def draw_fit_and_band(axes, study, points, look):
         return
     (h_mean, e_mean), h_coarse, h_fine = centroid(points), points[0][0], points[-1][0]
     line = lambda h: e_mean * (h / h_mean) ** fit["order"]
-    axes.plot([h_coarse, h_fine], [line(h_coarse), line(h_fine)], look.line, color=look.colour, linewidth=1.2, zorder=2)
+    axes.plot([h_coarse, h_fine], [line(h_coarse), line(h_fine)], linestyle=look.line, color=look.colour, linewidth=1.2, zorder=2)
     low, high = expected["low"], expected["high"]
     if low is None and high is None:
         return
@@ -245,25 +307,14 @@ def draw_early_ends(axes, study, spacing, look, level):
     spots = [sample[spacing] for sample in study["samples"] if not sample["survived"] and is_drawable(sample[spacing])]
     axes.plot(spots, [level] * len(spots), linestyle="none", marker="x", color=look.colour, markersize=6, markeredgewidth=1.6,
               transform=axes.get_xaxis_transform(), zorder=4, clip_on=False)
-    return bool(spots)
 
 
 def legend_text(study):
     band, fit = expectation(study), fitted_order(study["fit"])
     word = STATUSES[status(study)][0]
-    parts = [f"order {fit}" if fit else "", f"expected {band}" if band else "", word]
-    tier = f" ({study['tier']})" if study["tier_matters"] else ""
-    name = f"{shorten(study['scheme'], 28)}{tier}: "
-    return fitting(name + ", ".join(filter(None, parts)),
-                   name + ", ".join(filter(None, [f"{fit} ({band})" if fit and band else fit or band, word])))
-
-
-LEGEND_LETTERS = 66  # that the width of a picture holds
-
-
-def fitting(*texts):
-    """The first of the texts that fits into a legend; failing all, the last one cut."""
-    return next((text for text in texts if len(text) <= LEGEND_LETTERS), shorten(texts[-1], LEGEND_LETTERS))
+    in_full = ", ".join(filter(None, [f"order {fit}" if fit else "", f"expected {band}" if band else "", word]))
+    in_short = ", ".join(filter(None, [f"{fit} ({band})" if fit and band else fit or band, word]))
+    return named(study["scheme"] + (f" ({study['tier']})" if study["tier_matters"] else ""), in_full, in_short)
 
 
 def convergence(name, group, field, studies, scheme_looks, stamp, spacing="h"):
@@ -275,24 +326,27 @@ def convergence(name, group, field, studies, scheme_looks, stamp, spacing="h"):
         return None
     relative = any(sample["relative"] for study in studies for sample in study["samples"])
     rungs = [sample[spacing] for study in studies for sample in study["samples"] if is_drawable(sample[spacing])]
+    labels = [legend_text(study) for study in studies]
+    ended = [study for study in studies if not all(sample["survived"] for sample in study["samples"])]
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
-        canvas, axes = new_axes(f"{shorten(group, 48)}: {field}", SPACINGS[spacing], error_label(field, norm, relative), len(curves))
+        canvas, axes = new_axes(f"{shorten(group, 48)}: {field}", SPACINGS[spacing], error_label(field, norm, relative),
+                                line_count(labels))
         x_limits = set_log_axis(axes.xaxis, min(rungs), max(rungs))
         # Room below the points for the yardstick and the crosses.
         lowest, highest = min(e for _, e in every), max(e for _, e in every)
         y_limits = set_log_axis(axes.yaxis, lowest / max(1.6, (highest / lowest) ** 0.18), highest)
         set_ticks(axes.xaxis, rung_ticks(rungs), lambda value: f"{value:.3g}")
         handles = []
-        for index, (study, points, look) in enumerate(curves):
+        for label, (study, points, look) in zip(labels, curves):
             draw_fit_and_band(axes, study, points, look)
             axes.plot([h for h, _ in points], [e for _, e in points], linestyle="none", marker=look.marker, color=look.colour,
                       markeredgecolor="white", markeredgewidth=0.6, markersize=6.5, zorder=5)
             if study["fit"]["order"] is None:
-                axes.plot([h for h, _ in points], [e for _, e in points], look.line, color=look.colour, linewidth=0.8, alpha=0.7)
-            ended = draw_early_ends(axes, study, spacing, look, 0.035 + 0.045 * index)
+                axes.plot([h for h, _ in points], [e for _, e in points], linestyle=look.line, color=look.colour, linewidth=0.8, alpha=0.7)
+            if study in ended:
+                draw_early_ends(axes, study, spacing, look, 0.035 + min(0.045, 0.25 / len(ended)) * ended.index(study))
             handles.append(Line2D([], [], color=look.colour, linestyle=look.line if len(points) > 1 else "none",
-                                  marker=look.marker if points or not ended else "x",
-                                  markersize=5.5, label=plain(legend_text(study))))
+                                  marker=look.marker if points else "x", markersize=5.5, label=plain_lines(label)))
         draw_slope_triangle(axes, studies, x_limits, y_limits)
         axes.set_xlim(x_limits)
         axes.set_ylim(y_limits)
@@ -354,25 +408,26 @@ def cost_plot(name, front, relative, scheme_looks, stamp):
         return None
     rows = {row["scheme"]: row for row in front["rows"]}
     cost_title = COSTS.get(front["cost"], front["cost"])
+    judgements = [front_label(rows.get(scheme)) for scheme, _ in curves]
+    labels = [named(scheme, words, words.split(" at error ")[0]) for (scheme, _), words in zip(curves, judgements)]
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
         canvas, axes = new_axes(f"{shorten(front['group'], 48)}: {front['field']}", cost_title,
-                                error_label(front["field"], front["norm"], relative), len(curves))
+                                error_label(front["field"], front["norm"], relative), line_count(labels))
         x_limits = set_log_axis(axes.xaxis, min(c for c, _ in every), max(c for c, _ in every))
         y_limits = set_log_axis(axes.yaxis, min(e for _, e in every), max(e for _, e in every))
         handles = []
-        for scheme, points in curves:
+        for label, (scheme, points) in zip(labels, curves):
             look = scheme_looks[scheme]
             row = rows.get(scheme)
             leading = bool(row and row["on_front"])
             drawn = dict(color=look.colour, linestyle=look.line, marker=look.marker, linewidth=2.4 if leading else 1.0,
                          markersize=6.5, markerfacecolor=look.colour if leading else "white", markeredgewidth=1.2)
             axes.plot([c for c, _ in points], [e for _, e in points], zorder=4 if leading else 3, **drawn)
-            label = shorten(scheme, 24) + (f": {front_label(row)}" if row else "")
-            handles.append(Line2D([], [], label=plain(fitting(label, label.split(" at error ")[0])), **drawn))
+            handles.append(Line2D([], [], label=plain_lines(label), **drawn))
         axes.set_xlim(x_limits)
         axes.set_ylim(y_limits)
         add_legend(canvas, handles)
-        described = "; ".join(f"{scheme}: {front_label(rows.get(scheme)) or 'no judgement'}" for scheme, _ in curves)
+        described = "; ".join(f"{scheme}: {words or 'no judgement'}" for (scheme, _), words in zip(curves, judgements))
         title = f"Error of {front['field']} against {cost_title}, {front['group']}"
         svg = finish(canvas, name, title, f"Log-log plot. {described}.", stamp)
     return Picture(name, f"{sentence(error_label(front['field'], front['norm'], relative))} against {cost_title}. "

@@ -38,6 +38,8 @@ NORMS = [
               "log h, with the half-width of its 95 % confidence interval (Student's t)."),
     ("n, h, dx, N", "Particle spacings along the reference length; smoothing length; particle spacing; number of particles."),
     ("pair evaluations", "Particle pairs visited by all loops of a run: a count of work that does not depend on the machine."),
+    ("work", "Pair evaluations plus pressure-matrix entries touched by the linear solver: what a projection does beside its pairs "
+             "counts, too."),
     ("front", "The schemes that no other one beats at equal error; for the rest, by what factor they cost more "
               "(log-log interpolation, no extrapolation)."),
 ]
@@ -153,6 +155,21 @@ class Group:
     def cell(self, scheme, name):
         """Studies in one cell of the verdict matrix: one, or several that differ in their tier."""
         return [study for study in self.studies if study["scheme"] == scheme and study["field"] == name]
+
+    def common_rung(self):
+        """The finest n that every scheme of the group has run; None if they share none."""
+        rungs = [{sample["n"] for study in self.of_scheme(scheme) for sample in study["samples"]} for scheme in self.schemes]
+        shared = set.intersection(*rungs) if rungs else set()
+        return max(shared) if shared else None
+
+    def compared_runs(self):
+        """One run a scheme: at the common rung, of the first seed."""
+        n = self.common_rung()
+        runs = {}
+        for run in self.runs:
+            if run["n"] == n and (run["scheme"] not in runs or (run["seed"] or 0) < (runs[run["scheme"]]["seed"] or 0)):
+                runs[run["scheme"]] = run
+        return [runs[scheme] for scheme in self.schemes if scheme in runs]
 
     def results(self):
         """The result files that contribute to this group."""

@@ -8,7 +8,7 @@ NORM_COLUMNS = [
     Column("l2", "L2", "scientific", latex="$L_2$"), Column("order_l2", "order", "order"),
     Column("linf", "L∞", "scientific", latex=r"$L_\infty$"), Column("order_linf", "order", "order"),
 ]
-COST_TITLES = {"seconds": "run time", "pair_evaluations": "pair evaluations", "nanoseconds": "time of one application"}
+COST_TITLES = {"seconds": "run time", "work": "work (pairs + matrix entries)", "pair_evaluations": "pair evaluations", "nanoseconds": "time of one application"}
 
 
 def verdict_words(study):

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import jinja2
 from markupsafe import Markup
 
-from . import checks, figures, findings, numbers
+from . import budgets, checks, figures, findings, histories, numbers, particles
 from .ladders import NORM_COLUMNS, front_table, ladder_table
 from .operators import Workbench
-from .tables import Column, Names, Span, Table
+from .tables import Column, Names, Span, Table, breakable
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
@@ -96,13 +96,6 @@ def parameters_table(names, group, case):
                  rows, style="prose", context=group.label)
 
 
-def common_rung(group):
-    """The finest n that every scheme of the group has run; None if they share none."""
-    rungs = [{sample["n"] for study in group.of_scheme(scheme) for sample in study["samples"]} for scheme in group.schemes]
-    shared = set.intersection(*rungs) if rungs else set()
-    return max(shared) if shared else None
-
-
 def run_at(group, scheme, n):
     runs = [run for run in group.runs if run["scheme"] == scheme and run["n"] == n]
     return next((run for run in runs if run["survived"]), runs[0] if runs else {})
@@ -123,7 +116,7 @@ def throughput(sample):
 
 def comparison_table(names, group):
     """All schemes of a group at one rung: error beside cost."""
-    n = common_rung(group)
+    n = group.common_rung()
     if n is None:
         return None
     rows, spans = [], {}
@@ -135,7 +128,8 @@ def comparison_table(names, group):
         row = {"scheme": scheme, "seconds": sample["seconds"], "pair_evaluations": sample["pair_evaluations"],
                "solver_iterations": iterations, "iterations_per_step": per_step(iterations, sample) or None,
                "throughput": throughput(sample), "bytes_per_particle": run.get("bytes_per_particle"),
-               "energy_error": run.get("energy_error"), "minimum_spacing": run.get("minimum_spacing"),
+               "energy_error": run.get("energy_error"), "maximum_speed_error": run.get("maximum_speed_error"),
+               "minimum_spacing": run.get("minimum_spacing"),
                "survived": sample["survived"]}
         for field, entry in samples.items():
             row["l2_" + field] = entry["l2"] if entry else None
@@ -168,9 +162,10 @@ def claims_table(names, group):
     if not group.claims:
         return None
     rows = [dict(claim, verdict="agrees" if claim["agrees"] else "DISAGREES") for claim in group.claims]
-    return Table(names.unique(group.label, "claims"), "published claims and our findings",
-                 [Column("id", "claim"), Column("text", "what"), Column("published", "published"), Column("ours", "ours"),
-                  Column("verdict", "verdict"), Column("source", "source")], rows, style="prose", context=group.label)
+    agreeing = sum(bool(claim["agrees"]) for claim in group.claims)
+    return Table(names.unique(group.label, "claims"), f"published claims and our findings: {agreeing} of {len(rows)} agree",
+                 [Column("id", "claim"), Column("verdict", "verdict"), Column("text", "what"), Column("published", "published"),
+                  Column("ours", "ours"), Column("source", "source")], rows, style="cards", context=group.label)
 
 
 def runs_table(names, group):
@@ -336,6 +331,7 @@ class Builder:
         detailed = {scheme: run for scheme, run in detailed.items() if run}
         stamp = stamp_of(group.results())
         in_time = group.studies[0]["axis"] == "dt"  # one n throughout: nothing to compare schemes at, no run to tell by its n
+        dimension = case["dimension"] if case else None
         return {
             "label": group.label, "anchor": group.anchor, "case": case, "group": group,
             "parameters": self.keep(parameters_table(self.table_names, group, case)),
@@ -343,12 +339,26 @@ class Builder:
             "convergence": [picture for field in group.fields if (picture := self.draw(figures.convergence(
                 self.figure_names.unique(group.label, field, "convergence"), group.label, field, group.of_field(field),
                 self.looks, stamp, "dt" if in_time else "h")))],
+            "history": None if in_time else self.history_view(group, stamp),
+            "particles": [] if in_time else self.particle_pictures(group, stamp),
+            "budget": None if in_time else self.keep(budgets.table(self.table_names, group, dimension)),
             "schemes": [self.scheme_view(group, scheme, detailed.get(scheme)) for scheme in group.schemes],
             "fronts": [self.front_view(group, front) for front in group.fronts],
             "claims": self.keep(claims_table(self.table_names, group)) if group.claims else None,
             "runs": None if in_time else self.keep(runs_table(self.table_names, group)),
             "settings": self.keep(settings_table(self.table_names, group, detailed)),
         }
+
+    def history_view(self, group, stamp):
+        """Error over time; None where no run has a history."""
+        table = self.keep(histories.table(self.table_names, group))
+        name = self.figure_names.unique(group.label, "error-over-time")
+        return table and {"table": table, "plot": self.draw(histories.figure(name, group, self.looks, stamp))}
+
+    def particle_pictures(self, group, stamp):
+        made = [draw(self.figure_names.unique(group.label, "particles", field), group, stamp)
+                for field, draw in (("speed", particles.by_speed), ("pressure", particles.by_pressure))]
+        return [self.draw(picture) for picture in made if picture]
 
     def scheme_view(self, group, scheme, run):
         return {"name": scheme, "studies": [self.study_view(study) for study in group.of_scheme(scheme)], "run": run,
@@ -374,12 +384,12 @@ class Builder:
         return max(runs, key=lambda run: (run["survived"], run["n"]), default=None)
 
     def matrix_view(self):
-        """Schemes across; for each group its fields down."""
-        schemes = findings.unique(study["scheme"] for study in self.results["studies"])
-        rows = [{"group": group, "fields": [{"name": field, "cells": [[
+        """Fields across; for each group its schemes down, which are not the same in every group."""
+        fields = findings.unique(study["field"] for study in self.results["studies"])
+        rows = [{"group": group, "schemes": [{"name": scheme, "cells": [[
             {"study": study, "status": findings.status(study), "note": findings.matrix_note(study)}
-            for study in group.cell(scheme, field)] for scheme in schemes]} for field in group.fields]} for group in self.groups]
-        return {"schemes": schemes, "rows": rows}
+            for study in group.cell(scheme, field)] for field in fields]} for scheme in group.schemes]} for group in self.groups]
+        return {"fields": fields, "rows": rows}
 
     def view(self):
         """Everything the template needs."""
@@ -423,6 +433,7 @@ def render(view):
     environment.filters["general"] = numbers.general
     environment.filters["fitted_order"] = findings.fitted_order
     environment.filters["breakable"] = lambda name: Markup("_<wbr>").join(name.split("_"))
+    environment.filters["as_variant"] = lambda name: Markup(breakable(name))
     with open(os.path.join(HERE, "page.css"), encoding="utf-8") as stream:
         style = Markup(stream.read())
     return environment.get_template("page.html.j2").render(style=style, **view)

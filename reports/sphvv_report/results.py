@@ -36,10 +36,14 @@ STAGE = {"name": "text", "seconds": "number", "pair_evaluations": "number"}
 RUN_FIELD = {"name": "text", "bytes_per_particle": "number", "asked_by": "text"}
 BUDGET = {name + "?": "number" for name in ("momentum_drift", "kinetic_energy_start", "kinetic_energy_end", "elastic_energy_start",
                                             "elastic_energy_end", "energy_drift", "internal_torque")}
+MARK = {"time": "number", "l2_velocity": "number", "l2_pressure": "number", "maximum_speed": "number",
+        "maximum_speed_exact": "number", "energy_error": "number"}
+PICTURE = {"time?": "number", "box?": "numbers", **{name + "?": "numbers" for name in ("x", "y", "speed", "pressure")}}
 RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?": "number", "survived": "flag",
        "diagnosis?": "text", "end_time?": "number", "setup_seconds?": "number", "bytes_per_particle?": "number",
        "stages": [STAGE], "fields": [RUN_FIELD], "settings?": "object", "energy_error?": "number",
-       "minimum_spacing?": "number", "maximum_speed_error?": "number", "budget?": BUDGET}
+       "minimum_spacing?": "number", "maximum_speed_error?": "number", "budget?": BUDGET, "history?": [MARK],
+       "picture?": PICTURE}
 CURVE = {"scheme": "text", "n": "numbers", "error": "numbers", "cost": "numbers"}
 FRONT_ROW = {"scheme": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
 FRONT = {"group": "text", "field": "text", "norm": "text", "cost": "text", "curves": [CURVE], "rows": [FRONT_ROW]}
@@ -322,6 +326,17 @@ def check_curve(curve, path):
         raise ValueError(f"{path}: its arrays differ in length")
 
 
+def check_picture(picture, path):
+    """A picture has all of its members or, where there is none, no member at all."""
+    columns = [picture[name] for name in ("x", "y", "speed", "pressure")]
+    if all(value is None for value in picture.values()):
+        return
+    if None in columns or len(set(map(len, columns))) > 1:
+        raise ValueError(f"{path}: x, y, speed and pressure are not arrays of one length")
+    if len(picture["box"] or []) != 4 or None in picture["box"]:
+        raise ValueError(f"{path}.box is not low x, high x, low y, high y")
+
+
 def check_result(tree):
     """Checks the tree of a file; ValueError names the first member that is missing or wrong."""
     check_object(tree, RESULT, "")
@@ -332,6 +347,8 @@ def check_result(tree):
         for index, front in enumerate(tree[kind]):
             for number, curve in enumerate(front["curves"]):
                 check_curve(curve, f"{kind}[{index}].curves[{number}]")
+    for index, run in enumerate(tree["runs"]):
+        check_picture(run["picture"], f"runs[{index}].picture")
     if not any(tree[kind] for kind in EVIDENCE):
         raise ValueError("it holds no study, no check and no seeded fault")
 

@@ -143,7 +143,7 @@ class Table:
         return "<tr>" + "".join(cells) + "</tr>"
 
     def html_cell(self, column, row, is_first):
-        text = html.escape(numbers.for_page(self.text(column, row)) if column.kind != "text" else self.text(column, row))
+        text = breakable(self.text(column, row)) if column.kind == "text" else html.escape(numbers.for_page(self.text(column, row)))
         tag = 'th scope="row"' if is_first else "td"
         bar = ""
         if column.key == self.bars and row.get(column.key) is not None:
@@ -163,7 +163,12 @@ def head(column):
 
 def html_head(column):
     unit = f' <span class="unit">[{html.escape(column.unit)}]</span>' if column.unit else ""
-    return html.escape(column.title) + unit
+    return breakable(column.title) + unit
+
+
+def breakable(text):
+    """Text as HTML that may break within a variant's name, as in scheme:key=value:key=value."""
+    return re.sub(r"(?<=[:=])(?=\w)", "<wbr>", html.escape(text))
 
 
 def latex_head(column):

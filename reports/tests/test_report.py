@@ -12,7 +12,7 @@ import unittest
 import xml.dom.minidom
 
 import synthetic
-from sphvv_report import findings, numbers, output, results
+from sphvv_report import figures, findings, numbers, output, results
 from sphvv_report.__main__ import main
 from sphvv_report.tables import Column, Names, Table, latex_text, markdown_text
 
@@ -104,7 +104,8 @@ class WholePage:
             for name, value in attributes.items():
                 self.assertFalse(name.startswith("on"), name)
                 if name in ("src", "href", "xlink:href", "action", "data", "srcset"):
-                    self.assertRegex(value, r"^(#|tables/|figures/)", f"{tag} {name}")
+                    allowed = r"^data:image/png;base64," if tag == "image" else r"^(#|tables/|figures/)"  # pixels within a picture
+                    self.assertRegex(value, allowed, f"{tag} {name}")
         self.assertNotIn("@import", self.source)
         self.assertEqual([], re.findall(r"url\((?!#)", self.source))
         outside = set(re.findall(r"https?://[^\s\"'<>]+", self.source))
@@ -114,8 +115,8 @@ class WholePage:
         self.assertEqual((self.page.faults, self.page.open), ([], []))
         ids = [attributes["id"] for _, attributes in self.page.elements if "id" in attributes]
         self.assertEqual(len(ids), len(set(ids)), "ids on the page are unique")
-        for _, attributes in self.page.elements:
-            link = attributes.get("href") or attributes.get("xlink:href") or ""
+        for tag, attributes in self.page.elements:
+            link = "" if tag == "image" else attributes.get("href") or attributes.get("xlink:href") or ""
             if link.startswith("#"):
                 self.assertIn(link[1:], ids)
             elif link:
@@ -154,7 +155,7 @@ class WholePage:
                 self.assertIn("<desc", svg)
                 self.assertIn("revision 4f1c2d7e9ab0", svg)
                 self.assertNotIn("DOCTYPE", svg)
-                self.assertLess(len(svg), 40_000)
+                self.assertLess(len(svg), 300_000 if "__particles__" in name else 80_000)
 
     def test_two_runs_give_the_same_bytes(self):
         self.assertEqual(self.files, self.files_again)
@@ -352,6 +353,68 @@ class Merged(WholePage, unittest.TestCase):
         self.assertEqual([row["result_file"] for row in costs], ["results-1.h5"] * 4 + ["results-2.h5"] * 4)
 
 
+class Variants(WholePage, unittest.TestCase):
+    """Nine schemes and variants of schemes, with histories, pictures, budgets and many claims."""
+
+    pictures = 2 + 4 + 1 + 2  # convergence, fronts, error over time, particles by speed and by pressure
+
+    @staticmethod
+    def trees():
+        return [synthetic.variants(across=12)]
+
+    def rows(self, name):
+        return list(csv.DictReader(io.StringIO(self.files[f"tables/taylor_green-re-100__{name}.csv"].decode("utf-8"))))
+
+    def figure(self, name):
+        return self.files[f"figures/taylor_green-re-100__{name}.svg"].decode("utf-8")
+
+    def test_legends_name_every_variant_in_full(self):
+        for name in ("velocity__convergence", "pressure__error-against-work", "error-over-time"):
+            words = "".join(re.findall(r"<text[^>]*>([^<]*)</text>", self.figure(name)))
+            for scheme in synthetic.VARIANTS:
+                if scheme != synthetic.BARE or name != "error-over-time":
+                    self.assertIn(scheme, words)
+
+    def test_names_of_variants_may_break(self):
+        self.assertIn("wcsph:<wbr>continuity=<wbr>sigma_1:<wbr>pressure_force=<wbr>sigma_1", self.source)
+
+    def test_history(self):
+        rows = self.rows("history")
+        self.assertEqual(sum(row["scheme"] == "isph_dfs" for row in rows), 40)
+        blown_up = [row for row in rows if row["scheme"] == synthetic.BLOWN_UP]
+        self.assertEqual((blown_up[-1]["l2_velocity"], blown_up[-1]["maximum_speed"]), ("", ""))
+        self.assertAlmostEqual(float(rows[0]["speed_excess"]), float(rows[0]["maximum_speed"]) / float(rows[0]["maximum_speed_exact"]) - 1)
+        for words in ("Error over time at n = 40", "Crosses mark runs that ended early", "Errors above 10 are cut off", "Without a history: isph_mls."):
+            self.assertIn(words, self.text)
+        self.assertIn("isph_lee: ended early at t = 0.231 s", self.figure("error-over-time"))
+
+    def test_particles(self):
+        for field in ("speed", "pressure"):
+            svg = self.figure(f"particles__{field}")
+            self.assertGreater(svg.count("<image"), 8)
+            self.assertIn("isph_dfs:shift_correction=none", svg)
+            self.assertIn("n = 40, t = 0.231 s, ended early", svg)
+        for words in ("The scale ends at the largest exact speed at these times, 0.8", "of wcsph at n = 40, whose pressure error is smallest",
+                      "isph_df at n = 40 ended early: minimum spacing 0.12 dx", "Grey: not finite"):
+            self.assertIn(words, self.text)
+
+    def test_budget(self):
+        rows = {row["scheme"]: row for row in self.rows("budget")}
+        self.assertNotIn(synthetic.BARE, rows)
+        self.assertEqual((rows["wcsph"]["internal_torque"], rows["isph_dfs"]["internal_torque"]), ("0.00036", ""))
+        self.assertEqual(rows["isph_df"]["n"], "40")
+        self.assertIn("kinetic energy, start [J/m]", self.files["tables/taylor_green-re-100__budget.md"].decode())
+        self.assertIn("Momentum drift: |P(t) − P(0)|", self.text)
+
+    def test_work(self):
+        self.assertIn("Front of velocity error against work (pairs + matrix entries)", self.text)
+        self.assertIn(">work (pairs + matrix entries)</text>", self.figure("velocity__error-against-work"))
+
+    def test_claims(self):
+        self.assertIn("24 of 30 agree", self.text)
+        self.assertEqual(len(self.rows("claims")), 30)
+
+
 def hostile(tree):
     """The tree with every text turned hostile, verdicts excepted."""
     if isinstance(tree, dict):
@@ -433,6 +496,46 @@ class Odd(WithFolder):
         self.assertIn("1 rung shows errors, but bears no order verdict", text)
         self.assertIn("None: no verdict failed", text)
         self.assertIn("Waivers None.", text)
+
+    def changed(self, change):
+        """The report of two schemes of `variants` with every run that has a picture changed."""
+        tree = synthetic.variants(across=4)
+        for kind in ("studies", "runs"):
+            tree[kind] = [entry for entry in tree[kind] if entry["scheme"] in (synthetic.EARLY, "isph_dfs")]
+        tree["fronts"] = []
+        for run in tree["runs"]:
+            if "picture" in run:
+                change(run)
+        return self.report(tree)
+
+    def test_runs_without_history(self):
+        """As older files have it: the picture's scale then comes from the data."""
+        files = self.changed(lambda run: run.pop("history"))
+        self.assertNotIn("tables/taylor_green-re-100__history.csv", files)
+        text = Page(files["index.html"].decode()).all_text()
+        self.assertIn("the 99.5 percentile of all speeds", text)
+        self.assertIn("of |p| of isph_dfs at n = 40; pressures beyond it", text)  # the only one that reached its end
+
+    def test_history_that_no_axis_can_show(self):
+        """Its table says so; there is no picture of it."""
+        names = ("time", "l2_velocity", "l2_pressure", "maximum_speed", "maximum_speed_exact", "energy_error")
+        for value in (None, 0.0, float("inf")):
+            files = self.changed(lambda run: run.update(history=[dict.fromkeys(names, value)]))
+            self.assertIn("tables/taylor_green-re-100__history.csv", files)
+            self.assertNotIn("figures/taylor_green-re-100__error-over-time.svg", files)
+
+    def test_pictures_that_show_nothing(self):
+        empty = {"x": [], "y": [], "speed": [], "pressure": []}
+        nowhere = {"x": [None] * 2, "y": [0.0] * 2, "speed": [1.0] * 2, "pressure": [1.0] * 2}
+        for values, box in ((empty, [0.0, 1.0, 0.0, 1.0]), (nowhere, [0.0, 1.0, 0.0, 1.0]), (dict(nowhere, x=[0.5] * 2), [0.0, 0.0, 0.0, 1.0])):
+            files = self.changed(lambda run: run.update(picture={"time": 0.5, **values, "box": box}))
+            self.assertFalse([name for name in files if "particles" in name])
+
+    def test_pictures_of_values_that_no_colour_can_show(self):
+        one = {"time": 0.5, "x": [0.5], "y": [0.5], "box": [0.0, 1.0, 0.0, 1.0]}
+        for value, kinds in ((None, ["speed"]), (float("inf"), ["speed"]), (0.0, ["pressure", "speed"]), (-1e308, ["pressure", "speed"])):
+            files = self.changed(lambda run: run.update(picture={**one, "speed": [value], "pressure": [value]}))
+            self.assertEqual(sorted(name.split("__")[2][:-4] for name in files if "particles" in name), kinds)
 
     def test_every_rung_ended_early(self):
         tree = synthetic.small()
@@ -624,6 +727,20 @@ class Pieces(unittest.TestCase):
     def test_escapes(self):
         self.assertEqual(latex_text("50% of a_b & ∇p ≤ 漢"), r"50\% of a\_b \& $\nabla$p $\le$ [U+6F22]")
         self.assertEqual(markdown_text("a|b\n<i>"), r"a\|b &lt;i&gt;")
+
+    def test_looks_differ_without_colour(self):
+        """Colour and line, and colour and marker, are pairs of their own; so are line and marker."""
+        drawn = list(figures.looks(range(28)).values())
+        for pair in (("colour", "line"), ("colour", "marker"), ("line", "marker")):
+            self.assertEqual(len({tuple(getattr(look, part) for part in pair) for look in drawn}), 28)
+
+    def test_labels_break_and_keep_every_letter(self):
+        name = "wcsph:continuity=renormalised:pressure_force=renormalised_coherent"
+        self.assertEqual(figures.named("wcsph", "on the front"), "wcsph: on the front")
+        lines = figures.named(name, "on the front").split("\n")
+        self.assertEqual("".join(lines), name + ":on the front")
+        self.assertTrue(all(len(line) <= figures.LEGEND_LETTERS for line in lines))
+        self.assertEqual("".join(figures.wrapped("x" * 200, 30).split("\n")), "x" * 200)
 
     def test_names_are_given_once(self):
         names = Names()

@@ -80,6 +80,14 @@ class Reading(InFolder):
         self.assertEqual([row["than"] for row in read["fronts"][0]["rows"]], [""] * len(read["fronts"][0]["rows"]))
         self.assertTrue(all(sample["l2_spread"] is None for sample in read["studies"][0]["samples"]))
 
+    def test_histories_and_pictures_come_back(self):
+        written = synthetic.variants(across=4)
+        read = read_result(synthetic.write(self.path, written))
+        for ours, theirs in zip(read["runs"], written["runs"]):
+            self.assertEqual(ours["history"], theirs.get("history", []))
+            column = theirs.get("picture", {}).get("speed")
+            self.assertEqual(ours["picture"]["speed"], column and [None if math.isnan(value) else value for value in column])
+
     def test_unknown_members_are_let_pass(self):
         tree = synthetic.small()
         tree["stability_maps"] = [{"name": "eta"}]
@@ -178,6 +186,17 @@ class Refusing(InFolder):
         self.refuse_changed(lambda tree: tree["studies"][0]["fit"].update(verdict="GOOD"), "GOOD", "PASS")
         self.refuse_changed(lambda tree: tree["studies"][0]["fit"].update(order_l2=[1.0]), "order_l2", "4 rungs")
         self.refuse_changed(lambda tree: tree["studies"][0]["samples"][0].update(n=None), "samples[0].n is null")
+
+    def test_wrong_pictures(self):
+        def picture(**changes):
+            return lambda tree: tree["runs"][0].update(picture={"time": 1.0, "x": [0.5, 0.6], "y": [0.5, 0.6], "speed": [1.0, 1.0],
+                                                                "pressure": [1.0, 1.0], "box": [0.0, 1.0, 0.0, 1.0], **changes})
+        self.refuse_changed(picture(y=[0.5]), "runs[0].picture", "one length")
+        self.refuse_changed(picture(speed=None), "runs[0].picture", "one length")
+        self.refuse_changed(picture(box=[0.0, 1.0]), "runs[0].picture.box", "low x")
+        self.refuse_changed(picture(box=None), "runs[0].picture.box", "low x")
+        self.refuse_changed(picture(x=["a", "b"]), "runs[0].picture.x is not an array of numbers")
+        self.refuse_changed(lambda tree: tree["runs"][0].update(history=[{"time": 1.0}]), "runs[0].history[0].l2_velocity is missing")
 
     def test_wrong_members_of_the_workbench(self):
         def refuse(change, *words):

@@ -1,0 +1,32 @@
+"""What each scheme keeps of what an isolated fluid keeps: momentum, energy, the balance of torques."""
+
+from . import numbers
+from .tables import Column, Table
+
+MEANING = ("Momentum drift: |P(t) − P(0)| over total mass times largest expected speed. Kinetic energy: Σ m u²/2 at the start and at t. "
+           "Energy drift: change of the energy (kinetic and, of a compressible scheme, elastic) over the kinetic energy at the start; "
+           "exact viscosity is part of it. Against exact decay: kinetic energy at t over the exact one at t, minus 1, so that what "
+           "exact viscosity takes is out of it. Internal torque: |½ Σ r × f| of the forces between particles over the kinetic energy "
+           "at the start, at t. Closest pair: smallest distance of two particles during the run. – where a scheme has no such thing.")
+
+
+def table(names, group, dimension):
+    """One row a scheme, at the finest common rung; None where no run has a budget."""
+    runs = [run for run in group.compared_runs() if any(value is not None for value in run["budget"].values())]
+    if not runs:
+        return None
+    rows = [{"scheme": run["scheme"], "n": run["n"], "seed": run["seed"], "end_time": run["end_time"], **run["budget"],
+             "energy_error": run["energy_error"], "minimum_spacing": run["minimum_spacing"], "survived": run["survived"],
+             "how": "to the end" if run["survived"] else "ended early"} for run in runs]
+    joule = {2: "J/m", 3: "J"}.get(dimension, "")
+    columns = [Column("scheme", "scheme"), Column("n", "n", "integer"), Column("seed", "seed", shown=False),
+               Column("end_time", "t", "significant", "s", "$t$"),
+               Column("momentum_drift", "momentum drift", "scientific"),
+               Column("kinetic_energy_start", "kinetic energy, start", "significant", joule),
+               Column("kinetic_energy_end", "at t", "significant", joule),
+               Column("elastic_energy_start", "elastic energy, start", shown=False), Column("elastic_energy_end", "at t", shown=False),
+               Column("energy_drift", "energy drift", "scientific"), Column("energy_error", "against exact decay", "scientific"),
+               Column("internal_torque", "internal torque", "scientific"), Column("minimum_spacing", "closest pair", "significant", "dx"),
+               Column("how", "run"), Column("survived", "survived", "flag", shown=False)]
+    return Table(names.unique(group.label, "budget"), f"what each scheme keeps, n = {numbers.integer(group.common_rung())}",
+                 columns, rows, [MEANING], context=group.label)
