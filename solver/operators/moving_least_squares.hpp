@@ -125,9 +125,9 @@ taylor_coefficients(const Row<Dim>& row, int i, const double* A, double h) {
 }
 
 /// The same fit as weights: derivative m of any A at i (in the order of taylor_monomials) is
-/// sum_j w_j (A_j - A_i), w_j = (-F_ij) p(r_j - r_i) . N^-1 e_m. Writes the rows of the gradient (1/m) and, in
-/// `laplacian` (1/m2), that of the Laplacian; returns the sum of the latter, or nothing where the neighbours do
-/// not determine the fit.
+/// sum_j w_j (A_j - A_i), w_j = (-F_ij) p(r_j - r_i) . N^-1 e_m. Writes the rows of the gradient (1/m) and,
+/// in `laplacian` (1/m2), that of the Laplacian; returns the sum of the latter, or nothing where the
+/// neighbours do not determine the fit.
 template <int Dim, int Degree>
 std::optional<double> taylor_weights(const Row<Dim>& row, double h, const std::array<double*, Dim>& gradient,
                                      double* laplacian) {
