@@ -133,7 +133,7 @@ Vector<Dim> pressure_gradient(const Projection<Dim>& p, int i, const Row<Dim>& r
     if (p.gradient == Gradient::symmetric) {
         return symmetric_gradient<Dim>(i, row, pressure, volume);
     }
-    const Vector<Dim> gradient = gradient_difference<Dim>(row, i, pressure, volume);
+    Vector<Dim> gradient = gradient_difference<Dim>(row, i, pressure, volume);
     if (p.gradient == Gradient::plain) {
         return gradient;
     }
@@ -182,7 +182,7 @@ std::vector<Key> keys(const Defaults& defaults) {
 }
 
 template <int Dim>
-std::shared_ptr<Projection<Dim>> make_projection(Simulation<Dim>& s, Density density) {
+SharedProjection<Dim> make_projection(Simulation<Dim>& s, Density density) {
     Particles<Dim>& particles = s.particles;
     const Settings& settings = s.settings;
     const Gradient gradient = gradient_of(settings);
@@ -336,7 +336,7 @@ void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, co
 }
 
 #define SPHVV_INSTANTIATE(Dim)                                                                               \
-    template std::shared_ptr<Projection<Dim>> make_projection(Simulation<Dim>&, Density);                    \
+    template SharedProjection<Dim> make_projection(Simulation<Dim>&, Density);                               \
     template void choose_time_step(Simulation<Dim>&);                                                        \
     template void drift(Simulation<Dim>&);                                                                   \
     template void form_viscous_velocity(Simulation<Dim>&, Projection<Dim>&, double);                         \

@@ -44,6 +44,9 @@ struct Projection {
     PressurePoisson<Dim> poisson;
 };
 
+template <int Dim>
+using SharedProjection = std::shared_ptr<Projection<Dim>>;
+
 /// The density in div(grad p/rho): rho_0, or summed over the neighbours.
 enum class Density { constant, summed };
 
@@ -52,7 +55,7 @@ enum class Density { constant, summed };
 /// density moves its particles in between, so that an L_i would be read once or twice only: each sweep forms
 /// its own.
 template <int Dim>
-std::shared_ptr<Projection<Dim>> make_projection(Simulation<Dim>& simulation, Density density);
+SharedProjection<Dim> make_projection(Simulation<Dim>& simulation, Density density);
 
 /// dt = min(advective_limit h/u_max, viscous_limit h^2/nu) and, for a scheme that has the key, force_limit
 /// sqrt(h/|a|) with the largest acceleration of the last step. Source: Xu 2009 §3.4; Lee 2008 §1.3.
