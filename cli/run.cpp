@@ -147,8 +147,8 @@ Description describe(const Options& options) {
 
 SceneRecord scene_of(const Description& description) {
     SceneRecord scene =
-        resolve_scene(verification::cases::find(description.flow), &solver::schemes::find(description.scheme),
-                      description.settings, description.n);
+        resolve_scene(verification::cases::find(description.flow),
+                      verification::variant_of(description.scheme), description.settings, description.n);
     scene.seed = static_cast<std::uint64_t>(description.seed);
     check_scene(scene);
     return scene;

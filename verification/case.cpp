@@ -32,6 +32,11 @@ std::vector<Key> case_keys(const Case& c) {
                              "shifts, repeated) run five seeds per rung"));
     keys.push_back(
         Key::number("jitter", 0.1, 0, 0.5, "1", "largest displacement of a jittered start over dx"));
+    keys.push_back(
+        Key::number("maximum_energy", 1.1, 1, 1e9, "1",
+                    "a run whose kinetic energy exceeds its start value by this factor has gained "
+                    "energy that nothing supplies: the flow is not driven, and elastic energy is of "
+                    "the order (U/c0)^2 = 1 %"));
     keys.push_back(Key::number(
         "minimum_spacing", 0.25, 0, 1, "1",
         "a run in which two particles come closer than this times dx has lost its arrangement: a strain "

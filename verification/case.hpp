@@ -26,15 +26,21 @@ struct Condition {
     std::string word{};
 };
 
+/// How a run ends that cannot reach its end time: with a diagnosis, and its particles squeezed.
+struct EarlyEnd {
+    double spacing;    ///< dx: the smallest distance of two particles until then is at most this
+    double not_before; ///< s: earlier, nothing has squeezed them so far
+};
+
 /// What one scheme is expected to do on a case, wherever all conditions hold.
 struct Expectation {
     std::string scheme;
-    std::string field; ///< "velocity" or "pressure"; empty for every field, with `ends_early`
+    std::string field; ///< "velocity" or "pressure"; empty for every field
     std::vector<Condition> where;
-    Expected order;          ///< band and its source
-    std::string text;        ///< why: the theory in a line
-    bool ends_early = false; ///< the run must end with a diagnosis before its end time, on every rung
-    std::string waiver{};    ///< reason for which a verdict other than PASS is tolerated; printed with it
+    Expected order;                       ///< band and its source
+    std::string text;                     ///< why: the theory in a line
+    std::optional<EarlyEnd> ends_early{}; ///< the run must end so before its end time, on every rung
+    std::string waiver{}; ///< reason for which a verdict other than PASS is tolerated; printed with it
 };
 
 /// One ladder that the project runs by itself.
@@ -70,6 +76,7 @@ struct Claim {
     };
     /// Nothing if the runs at hand do not cover the claim.
     std::function<std::optional<Finding>(std::span<const RunRecord>)> measure;
+    bool binding = false; ///< a goal of the project: where it is missed, the study has failed
 };
 
 /// A flow in a periodic box that starts from, and is held against, an exact solution of analytic/. One file

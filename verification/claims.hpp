@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,13 +63,14 @@ inline std::string fate(const RunRecord& run, const std::string& if_survived) {
     return run.survived ? if_survived : "ends at t = " + number(run.time, "%.2f");
 }
 
-/// Least-squares order of the L2 error of a field over the rungs with n >= from, all seeds of a rung
+/// Least-squares order of the L2 error of a field over the rungs with from <= n <= to, all seeds of a rung
 /// together; nothing unless there are five rungs (or fewer are asked for) and all runs survived.
 inline std::optional<double> fitted_order(std::span<const RunRecord> runs, std::string_view scheme,
-                                          std::string_view field, int from, std::size_t rungs_needed = 5) {
+                                          std::string_view field, int from, std::size_t rungs_needed = 5,
+                                          int to = std::numeric_limits<int>::max()) {
     std::vector<Rung> rungs;
     for (const RunRecord& run : runs) {
-        if (run.scheme == scheme && run.n >= from) {
+        if (run.scheme == scheme && run.n >= from && run.n <= to) {
             if (!run.survived) {
                 return std::nullopt;
             }
@@ -84,10 +86,11 @@ inline std::optional<double> fitted_order(std::span<const RunRecord> runs, std::
     return fit_order(rungs).order;
 }
 
-/// Work at which a scheme's velocity error comes down to `error`, between two rungs on a straight line in
+/// Cost at which a scheme's velocity error comes down to `error`, between two rungs on a straight line in
 /// logarithms, from the first seed of each; nothing where the rungs do not bracket it.
-inline std::optional<double> work_at_error(std::span<const RunRecord> runs, std::string_view scheme,
-                                           double error) {
+template <class Cost>
+std::optional<double> cost_at_error(std::span<const RunRecord> runs, std::string_view scheme, double error,
+                                    const Cost& cost) {
     const RunRecord* coarser = nullptr;
     for (const RunRecord& run : runs) {
         if (run.scheme != scheme || run.seed != 1 || !run.survived) {
@@ -97,11 +100,22 @@ inline std::optional<double> work_at_error(std::span<const RunRecord> runs, std:
             l2_error(run, "velocity") <= error) {
             const double share = std::log(l2_error(*coarser, "velocity") / error) /
                                  std::log(l2_error(*coarser, "velocity") / l2_error(run, "velocity"));
-            return work_of(*coarser) * std::pow(work_of(run) / work_of(*coarser), share);
+            return cost(*coarser) * std::pow(cost(run) / cost(*coarser), share);
         }
         coarser = &run;
     }
     return std::nullopt;
+}
+
+/// The same for work and for seconds.
+inline std::optional<double> work_at_error(std::span<const RunRecord> runs, std::string_view scheme,
+                                           double error) {
+    return cost_at_error(runs, scheme, error, work_of);
+}
+
+inline std::optional<double> seconds_at_error(std::span<const RunRecord> runs, std::string_view scheme,
+                                              double error) {
+    return cost_at_error(runs, scheme, error, [](const RunRecord& run) { return run.seconds; });
 }
 
 } // namespace sphvv::verification

@@ -195,10 +195,11 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
     simulation.particle_mass = medium.density * box.volume() / static_cast<double>(points[0].size());
     simulation.end_time = scene.case_settings.number("end_time");
     simulation.survival = {
-        .kinetic_energy = 1.1 * medium.density * box.volume() * solution.kinetic_energy(values, 0),
+        .kinetic_energy = scene.case_settings.number("maximum_energy") * medium.density * box.volume() *
+                          solution.kinetic_energy(values, 0),
         .minimum_spacing = scene.case_settings.number("minimum_spacing") * dx,
-        // Nothing drives the flow; elastic energy, the only other store, is of the order of (U/c0)^2 = 1 %.
-        .kinetic_energy_reason = "1.1 times its start value in an undriven flow",
+        .kinetic_energy_reason =
+            scene.case_settings.text("maximum_energy") + " times its start value in an undriven flow",
         .minimum_spacing_reason = "arrangement lost",
     };
     solver::Particles<Dim>& particles = simulation.particles;

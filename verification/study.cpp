@@ -116,21 +116,45 @@ std::string count_of(std::size_t count, const char* noun) {
     return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
-/// A run that is expected to end early.
-void judge_fate(FieldStudy& study) {
-    const auto survivor = std::find_if(study.samples.begin(), study.samples.end(),
-                                       [](const Sample& sample) { return sample.survived; });
-    if (survivor != study.samples.end()) {
-        study.verdict = "FAIL";
-        study.reason = "the run at n = " + std::to_string(survivor->n) +
-                       " reached the end time, although it is expected "
-                       "to end early: " +
-                       study.expectation->text;
-        return;
+/// "0.2" or "0.2…0.3"
+std::string range_of(const std::vector<double>& values) {
+    const auto [low, high] = std::ranges::minmax(values);
+    char text[64];
+    std::snprintf(text, sizeof text, low == high ? "%.3g" : "%.3g…%.3g", low, high);
+    return text;
+}
+
+/// Runs that are expected to end early.
+void judge_fate(FieldStudy& study, const std::vector<const RunRecord*>& runs) {
+    const EarlyEnd& expected = *study.expectation->ends_early;
+    std::vector<double> times;
+    std::vector<double> spacings;
+    for (const RunRecord* run : runs) {
+        times.push_back(run->time);
+        spacings.push_back(run->minimum_spacing);
+        const std::string at = "the run at n = " + std::to_string(run->n);
+        if (run->survived) {
+            study.verdict = "FAIL";
+            study.reason = at + " reached the end time, although it is expected to end early: ";
+            study.reason += study.expectation->text;
+            return;
+        }
+        if (run->time < expected.not_before || !(run->minimum_spacing <= expected.spacing)) {
+            char text[160];
+            std::snprintf(text, sizeof text,
+                          " ended at t = %.3g with a smallest spacing of %.3g dx; expected: not before %.3g, "
+                          "at most %.3g dx: ",
+                          run->time, run->minimum_spacing, expected.not_before, expected.spacing);
+            study.verdict = "FAIL";
+            study.reason = at + text + run->diagnosis;
+            study.ended_unexpectedly = true;
+            return;
+        }
     }
     study.verdict = "PASS";
-    study.reason = "ended early on " + count_of(study.samples.size(), "rung") +
-                   ", as expected: " + study.expectation->text;
+    study.reason = "ended early on " + count_of(study.samples.size(), "rung") + " (t = " + range_of(times) +
+                   ", smallest spacing " + range_of(spacings) + " dx), as expected: ";
+    study.reason += study.expectation->text;
 }
 
 void judge_order(FieldStudy& study, const std::vector<Rung>& rungs) {
@@ -179,7 +203,9 @@ FieldStudy judge_field(const std::string& label, const std::string& field, Axis 
     study.axis = axis;
     study.expectation = std::move(expectation);
     std::vector<Rung> rungs;
+    std::vector<const RunRecord*> of_label;
     for (const auto& [coarseness, runs] : rungs_of(all_runs, label, axis)) {
+        of_label.insert(of_label.end(), runs.begin(), runs.end());
         const Sample& sample = study.samples.emplace_back(sample_of(runs, field));
         if (sample.survived) {
             Rung& rung = rungs.emplace_back(Rung{abscissa(sample, axis), {}});
@@ -193,7 +219,7 @@ FieldStudy judge_field(const std::string& label, const std::string& field, Axis 
     study.order_l2 = pairwise_orders(study.samples, &Norms::l2, axis);
     study.order_linf = pairwise_orders(study.samples, &Norms::linf, axis);
     if (study.expectation && study.expectation->ends_early) {
-        judge_fate(study);
+        judge_fate(study, of_label);
     } else if (lost != study.samples.end()) {
         study.ended_unexpectedly = true;
         study.verdict = "FAIL";
@@ -223,7 +249,8 @@ void check_time_ladder(const LadderRequest& request) {
         throw UserError("a ladder in time takes one resolution; give --n one number, not " +
                         std::to_string(request.ladder.size()));
     }
-    if (request.settings.contains("time_step")) {
+    const auto sets_it = [](const Variant& variant) { return variant.settings.contains("time_step"); };
+    if (request.settings.contains("time_step") || std::ranges::any_of(request.schemes, sets_it)) {
         throw UserError("a ladder in time sets the key time_step itself; leave it out");
     }
 }
@@ -404,6 +431,11 @@ int exit_status(const LadderResult& result) {
             continue;
         }
         status = std::max(status, study.ended_unexpectedly ? 3 : 1);
+    }
+    for (const ClaimFinding& claim : result.claims) {
+        if (claim.claim->binding && !claim.finding.agrees) {
+            status = std::max(status, 1);
+        }
     }
     return status;
 }

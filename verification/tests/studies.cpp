@@ -138,6 +138,8 @@ TEST(Verdicts, ExpectedEarlyEndPassesOnlyIfEveryRungEnds) {
     for (RunRecord& run : runs) {
         run.survived = false;
         run.diagnosis = "arrangement lost";
+        run.time = 0.24;
+        run.minimum_spacing = 0.25;
         run.errors.clear();
     }
     EXPECT_EQ(judged(runs, "isph_df").verdict, "PASS");
@@ -301,6 +303,44 @@ TEST(Verdicts, WaiverIsPrintedWithTheFailure) {
     EXPECT_EQ(document["studies"][0]["fit"]["verdict"], "FAIL");
 }
 
+// A run that is expected to end early passes only if it ends as theory has it.
+TEST(Verdicts, AnEarlyEndMustBeTheExpectedOne) {
+    const auto ended = [](double time, double spacing, bool survived) {
+        std::vector<RunRecord> runs = synthetic_runs("isph_df", ladder, [](double) { return 1.0; });
+        for (RunRecord& run : runs) {
+            run.survived = survived;
+            run.diagnosis = survived ? "" : "made up";
+            run.time = time;
+            run.minimum_spacing = spacing;
+            if (!survived) {
+                run.errors.clear();
+            }
+        }
+        return judged(runs, "isph_df");
+    };
+    EXPECT_EQ(ended(0.24, 0.25, false).verdict, "PASS");
+    EXPECT_NE(ended(0.24, 0.25, false).reason.find("t = 0.24, smallest spacing 0.25 dx"), std::string::npos);
+    EXPECT_EQ(ended(1, 0.25, true).verdict, "FAIL") << "survived";
+    const FieldStudy at_once = ended(0.01, 0.98, false);
+    EXPECT_EQ(at_once.verdict, "FAIL") << "a fault that ends a run in its first steps";
+    EXPECT_NE(at_once.reason.find("made up"), std::string::npos);
+    EXPECT_TRUE(at_once.ended_unexpectedly);
+    EXPECT_EQ(ended(0.24, 0.8, false).verdict, "FAIL") << "not squeezed";
+    EXPECT_EQ(ended(0.05, 0.3, false).verdict, "FAIL") << "too early";
+}
+
+// A goal of the project is no mere remark.
+TEST(Verdicts, AMissedGoalFailsTheLadder) {
+    LadderResult result{};
+    const Claim goal{
+        .id = "goal", .text = "", .published = "", .source = "", .where = {}, .measure = {}, .binding = true};
+    const Claim remark{.id = "remark", .text = "", .published = "", .source = "", .where = {}, .measure = {}};
+    result.claims = {{&goal, {"", true}}, {&remark, {"", false}}};
+    EXPECT_EQ(exit_status(result), 0);
+    result.claims[0].finding.agrees = false;
+    EXPECT_EQ(exit_status(result), 1);
+}
+
 // A waiver for one start arrangement must not reach the others.
 TEST(Verdicts, AConditionOnAWordHoldsForThatWordOnly) {
     EXPECT_FALSE(expectation_of("wcsph", "velocity", {{"arrangement", "jittered"}})->waiver.empty());
@@ -340,7 +380,7 @@ TEST(Cases, EveryExpectationHasBandReasonAndSource) {
             SCOPED_TRACE(std::string(flow->name) + " " + e.scheme + " " + e.field);
             EXPECT_FALSE(e.order.source.empty());
             EXPECT_FALSE(e.text.empty());
-            EXPECT_EQ(e.ends_early, !e.order.low && !e.order.high);
+            EXPECT_EQ(e.ends_early.has_value(), !e.order.low && !e.order.high);
             const solver::Settings of_scheme(solver::schemes::find(e.scheme).keys, {});
             for (const Condition& condition : e.where) {
                 EXPECT_NO_THROW(applies({&condition, 1}, settings_of(*flow), of_scheme));
