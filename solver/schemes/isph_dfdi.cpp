@@ -9,15 +9,17 @@ namespace {
 
 using projection::Projection;
 
-/// max_i |rho_0 - rho_i|/rho_0, which is |sigma_0 - sigma_i|/sigma_0 with sigma_0 = rho_0/m.
+/// max_i |rho_0 - rho_i|/rho_0, which is |sigma_0 - sigma_i|/sigma_0 with sigma_0 = rho_0/m; with the mean of
+/// rho_i in the place of rho_0, as in the equations that take the error out (see mean_density()).
 template <int Dim>
 double largest_density_error(const Simulation<Dim>& s, const Field& density) {
     const int count = static_cast<int>(s.particles.size());
     const double* rho = density[0];
+    const double mean = projection::mean_density(s, density);
     double largest = 0;
 #pragma omp parallel for schedule(static) reduction(max : largest)
     for (int i = 0; i < count; ++i) {
-        largest = std::max(largest, std::abs(s.density - rho[i]) / s.density);
+        largest = std::max(largest, std::abs(mean - rho[i]) / s.density);
     }
     return largest;
 }

@@ -24,6 +24,9 @@ namespace {
 //
 // where e = O(h^2) is what the discrete operators leave of the identity. Zero stays zero, and what e makes of
 // it is De/Dt / kappa = O(h^4), as kappa is proportional to (U/h)^2; without s it were e/lambda = O(h^3).
+// That is on even particles: on disordered ones the Laplacians are wrong by O(h), and so is e, up to nu O(1)
+// of the viscous term; O(h^3) + nu O(h^2) is left of the divergence. (s moves with the particles, shifts
+// included: its convection by du_s, which is small as s itself is, is left out.)
 //
 // Particles move with u + du_s, and du/dt along that path has the term (du_s.grad) u: shifting without a
 // correction to be made afterwards. Particles repel each other with strengths that differ a little. Alike,
@@ -87,17 +90,6 @@ struct Fields {
     bool quadratic;  ///< moving least squares; else renormalised gradient and Morris Laplacian
     UniformVolume volume;
 };
-
-template <int Dim>
-void choose_time_step(Simulation<Dim>& s) {
-    const double fixed = s.settings.number("time_step");
-    const double h = s.smoothing_length;
-    const double u_max = std::max(s.reference_speed, maximum_speed(s));
-    s.time_step = even_step(
-        s, fixed > 0 ? fixed
-                     : std::min(s.settings.number("advective_limit") * h / u_max,
-                                s.settings.number("viscous_limit") * h * h / s.kinematic_viscosity));
-}
 
 /// Sum over one row of w_j (A_j - A_i).
 template <int Dim>
@@ -234,6 +226,13 @@ double typical_speed(const Simulation<Dim>& s) {
     return std::sqrt(squares / count);
 }
 
+/// value = min(value, candidate): the same from any number of threads.
+void lower(std::atomic<int>& value, int candidate) {
+    int seen = value;
+    while (candidate < seen && !value.compare_exchange_weak(seen, candidate)) {
+    }
+}
+
 /// Weights of gradient and Laplacian, and every rate but for the pressure gradient.
 template <int Dim>
 void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
@@ -254,7 +253,7 @@ void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
                 ? taylor_weights<Dim, 2>(row, s.smoothing_length, weights, f.poisson.weights(i))
                 : std::optional(renormalised_weights<Dim>(row, f.volume, weights, f.poisson.weights(i)));
         if (!total) {
-            undetermined = i;
+            lower(undetermined, i);
             return;
         }
         f.poisson.diagonal(i) = *total;
@@ -280,7 +279,7 @@ void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
                        " do not determine a quadratic polynomial at t = " + shortest(s.time) + ", step " +
                        std::to_string(s.step));
     }
-    s.count_sweeps(4); // normal (or renormalisation) matrix, weights, gradient and Laplacian, repulsion
+    s.count_sweeps(5); // normal (or renormalisation) matrix, weights, gradient, Laplacian, repulsion
 }
 
 /// w(r, u), a(r, u) and the pressure, on the current neighbour list.
@@ -364,7 +363,7 @@ void assemble(Simulation<Dim>& s) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
         fields->strength[0][i] = 1 + s.settings.number("shift_disorder") * scattered(particles.id[i]);
     }
-    s.add_stage("time_step", choose_time_step<Dim>);
+    s.add_stage("time_step", projection::choose_time_step<Dim>);
     s.add_stage("rates_at_start", [fields](Simulation<Dim>& sim) {
         if (sim.step == 1) {
             find_neighbours(sim, 0);

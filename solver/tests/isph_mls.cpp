@@ -5,6 +5,7 @@
 
 #include <Eigen/QR>
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <vector>
 
@@ -269,6 +270,47 @@ double divergence_at(int n, const Assignments& given) {
         squares += std::pow(value / kappa, 2);
     }
     return std::sqrt(squares / static_cast<double>(scene.particles.size()));
+}
+
+// Which particle a diagnosis names must not depend on the number of threads.
+TEST(IsphMls, NamesTheFirstParticleWhoseNeighboursAreTooFew) {
+    const Scheme& scheme = schemes::find("isph_mls");
+    Points<2> points = lattice<2>(cube<2>(0.5, false), 1. / 48);
+    for (const double x : {0.7, 0.75, 0.8, 0.85, 0.9}) {
+        append<2>(points, {x, x});
+    }
+    const auto still = still_scene<2>(scheme, {}, 48);
+    const int threads = omp_get_max_threads();
+    std::vector<std::string> diagnoses;
+    for (const int team : {1, 2, 2, 2, 2}) {
+        omp_set_num_threads(team);
+        Simulation<2> scene(still.box, points[0].size());
+        scene.settings = still.settings;
+        scene.kernel = still.kernel;
+        scene.particle_spacing = still.particle_spacing;
+        scene.smoothing_length = still.smoothing_length;
+        scene.density = 1;
+        scene.kinematic_viscosity = 0.01;
+        scene.reference_speed = 1;
+        scene.particle_mass = still.particle_mass;
+        scene.end_time = 1;
+        for (int d = 0; d < 2; ++d) {
+            scene.particles.position.components[d] = points[d];
+        }
+        scheme.assemble(scene);
+        try {
+            advance(scene);
+        } catch (const Diverged& reason) {
+            diagnoses.emplace_back(reason.what());
+        }
+    }
+    omp_set_num_threads(threads);
+    ASSERT_EQ(diagnoses.size(), 5U);
+    EXPECT_NE(diagnoses[0].find("particle " + std::to_string(points[0].size() - 5) + " "), std::string::npos)
+        << diagnoses[0];
+    for (const std::string& diagnosis : diagnoses) {
+        EXPECT_EQ(diagnosis, diagnoses[0]);
+    }
 }
 
 // What keeps the divergence down: with hardly any integral it settles at e/lambda, with it at De/Dt / kappa,

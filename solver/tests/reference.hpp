@@ -256,10 +256,9 @@ struct Reference {
         density_iterations = 0;
         listed_pairs = {number_of(pairs)};
         for (; density_iterations < choices.density_iterations; ++density_iterations) {
-            Eigen::VectorXd right(count);
-            for (int i = 0; i < count; ++i) {
-                right[i] = (sigma0 - density[i] / m) / sigma0;
-            }
+            // sigma0 - sigma_i but for a constant, which is out of the equations' reach.
+            const Eigen::VectorXd sigma = Eigen::Map<const Eigen::VectorXd>(density.data(), count) / m;
+            const Eigen::VectorXd right = (sigma.mean() - sigma.array()) / sigma0;
             if (right.cwiseAbs().maxCoeff() < choices.density_tolerance) {
                 break;
             }

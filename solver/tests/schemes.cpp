@@ -942,7 +942,7 @@ TEST(IsphDfs, CarriesAFieldBetterTheHigherTheOrderOfItsCorrection) {
 }
 
 /// Of the summation density, (rho - rho_0)/rho_0, at the positions that the particles have: its spread about
-/// the mean (root of the mean square) and its largest size.
+/// the mean (root of the mean square) and its largest distance from the mean.
 struct DensityError {
     double spread;
     double largest;
@@ -957,7 +957,7 @@ DensityError density_error(const Simulation<Dim>& scene) {
     const auto pairs = all_neighbours<Dim>(scene.box, points, *scene.kernel, scene.smoothing_length);
     double sum = 0;
     double squares = 0;
-    double largest = 0;
+    std::vector<double> errors;
     for (const auto& row : pairs) {
         double W = scene.kernel->value(Dim, 0, scene.smoothing_length);
         for (const auto& pair : row) {
@@ -966,10 +966,12 @@ DensityError density_error(const Simulation<Dim>& scene) {
         const double error = scene.particle_mass * W / scene.density - 1;
         sum += error;
         squares += error * error;
-        largest = std::max(largest, std::abs(error));
+        errors.push_back(error);
     }
     const auto count = static_cast<double>(pairs.size());
-    return {std::sqrt(squares / count - sum * sum / (count * count)), largest};
+    const auto [low, high] = std::ranges::minmax(errors);
+    return {std::sqrt(squares / count - sum * sum / (count * count)),
+            std::max(sum / count - low, high - sum / count)};
 }
 
 /// The density error of a disordered arrangement that starts at rest.

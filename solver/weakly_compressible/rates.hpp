@@ -17,8 +17,8 @@
 /// `continuity`, `pressure_force` and `viscosity` name.
 namespace sphvv::solver::weakly_compressible {
 
-/// Volumes V_j = m/rho_j (m^dim).
-struct MassOverDensity {
+/// Volumes V_j = m/rho_j (m^dim) where 1/rho_j is at hand.
+struct MassTimesSpecificVolume {
     double m;
     const double* specific_volume;
     Lanes operator()(const int* j) const { return m * gather(specific_volume, j); }
@@ -185,7 +185,7 @@ void update_volumes(Rates<Dim>& f, int count) {
 /// stray particle: it is all surface.
 template <int Dim>
 void update_renormalisation(const Simulation<Dim>& s, Rates<Dim>& f) {
-    const MassOverDensity volume{s.particle_mass, f.specific_volume[0]};
+    const MassTimesSpecificVolume volume{s.particle_mass, f.specific_volume[0]};
     const auto stored = arrays<symmetric_components<Dim>>(*f.renormalisation);
     double* eigenvalue = f.lowest_eigenvalue == nullptr ? nullptr : (*f.lowest_eigenvalue)[0];
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
@@ -219,7 +219,7 @@ template <int Dim>
 void continuity(Simulation<Dim>& s, Rates<Dim>& f) {
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const UniformVolume mass{s.particle_mass};
-    const MassOverDensity volume{s.particle_mass, f.specific_volume[0]};
+    const MassTimesSpecificVolume volume{s.particle_mass, f.specific_volume[0]};
     const double* rho = f.density[0];
     double* rate = f.density_rate[0];
     switch (f.form) {
