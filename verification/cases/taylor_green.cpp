@@ -258,8 +258,7 @@ MaybeFinding same_at_old_positions(Runs runs) {
     const auto& [moved, old] = *of;
     const double ratio = l2_error(*old, "velocity") / l2_error(*moved, "velocity");
     return Claim::Finding{"L2 at 40^2: moved " + errors_of(*moved) + "; old " + errors_of(*old),
-                          moved->survived == old->survived &&
-                              (!moved->survived || std::abs(ratio - 1) < 0.1)};
+                          moved->survived && old->survived && std::abs(ratio - 1) < 0.1};
 }
 
 MaybeFinding noise_of_the_pressure(Runs runs) {
@@ -283,7 +282,7 @@ MaybeFinding u_max_converges(Runs runs) {
     }
     return Claim::Finding{"u_max error 40^2 " + number(100 * coarse->maximum_speed_error, "%+.2f %%") +
                               ", 80^2 " + number(100 * fine->maximum_speed_error, "%+.2f %%"),
-                          coarse->maximum_speed_error < 0 &&
+                          coarse->survived && fine->survived && coarse->maximum_speed_error < 0 &&
                               std::abs(fine->maximum_speed_error) < std::abs(coarse->maximum_speed_error)};
 }
 

@@ -10,6 +10,8 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <random>
 #include <set>
 
 namespace sphvv::verification {
@@ -266,6 +268,109 @@ TEST(Claims, MeasureOrdersAndWork) {
     EXPECT_NEAR(*work_at_error(seeds, "a", h * h), 3000, 1e-6);
     runs[2].survived = false;
     EXPECT_FALSE(fitted_order(runs, "a", "velocity", 10));
+}
+
+/// Runs of every scheme that a study of the case has, on every rung, whose results are drawn at random.
+std::vector<RunRecord> random_world(const Case& flow, std::mt19937_64& engine) {
+    const auto uniform = [&](double low, double high) {
+        return low + (high - low) * static_cast<double>(engine() >> 11U) * 0x1p-53;
+    };
+    std::set<std::string> labels;
+    for (const Study& study : flow.studies) {
+        for (const std::string& text : study.schemes) {
+            labels.insert(variant_of(text).label());
+        }
+    }
+    std::vector<RunRecord> runs;
+    for (const std::string& label : labels) {
+        const std::array<double, 2> order{uniform(0, 3), uniform(0, 3)};
+        const std::array<double, 2> level{std::pow(10, uniform(-4, 0)), std::pow(10, uniform(-4, 0))};
+        const bool survives = uniform(0, 1) < 0.7;
+        const double speed = uniform(-0.1, 0.1);
+        const double cost = std::pow(10, uniform(-4, 0));
+        const double disorder = uniform(0, 0.2);
+        for (RunRecord run :
+             synthetic_runs(label, {20, 28, 40, 56, 80, 112, 160, 200, 240}, [](double h) { return h; })) {
+            const double share = std::pow(20. / run.n, 1);
+            for (int f = 0; f < 2; ++f) {
+                run.errors[f].norms.l2 = level[f] * std::pow(share, order[f]);
+            }
+            Deviation end{};
+            end.velocity.l2 = run.errors[0].norms.l2;
+            end.maximum_speed_exact = 1;
+            end.maximum_speed = 1 + speed * share * uniform(0.5, 1);
+            run.maximum_speed_error = end.maximum_speed - 1;
+            run.history = {end};
+            run.survived = survives;
+            run.time = survives ? 1 : uniform(0.2, 0.3);
+            if (!survives) {
+                run.errors.clear();
+            }
+            run.minimum_spacing = uniform(0, 1);
+            run.seconds = cost * run.n;
+            run.work.pair_evaluations = static_cast<std::int64_t>(1e6 * cost * run.n);
+            run.budget.momentum_drift = std::pow(10, uniform(-18, -6));
+            run.budget.energy_drift = std::pow(10, uniform(-9, 0));
+            run.settings = {{"kernel", "quintic_spline"}};
+            Picture picture;
+            picture.box = {0, 1, 0, 1};
+            for (int k = 0; k < 36; ++k) {
+                picture.x.push_back((k % 6 + disorder * uniform(0, 1)) / 6);
+                picture.y.push_back((k / 6 + disorder * uniform(0, 1)) / 6);
+            }
+            run.h = 1.3 / run.n;
+            run.picture = picture;
+            runs.push_back(run);
+        }
+    }
+    return runs;
+}
+
+// house.md §7.10: no claim agrees, or disagrees, whatever the runs say. One that no run of its studies could
+// measure would be found, too.
+TEST(Claims, CanAllBeMetAndMissed) {
+    for (const Case* flow : cases::all()) {
+        std::map<const Claim*, std::set<bool>> outcomes;
+        std::mt19937_64 engine(20261123);
+        for (int world = 0; world < 400; ++world) {
+            const std::vector<RunRecord> runs = random_world(*flow, engine);
+            for (const Claim& claim : flow->claims) {
+                if (outcomes[&claim].size() < 2) {
+                    if (const auto finding = claim.measure(runs)) {
+                        outcomes[&claim].insert(finding->agrees);
+                        EXPECT_FALSE(finding->ours.empty());
+                    }
+                }
+            }
+        }
+        for (const Claim& claim : flow->claims) {
+            EXPECT_EQ(outcomes[&claim].size(), 2U) << claim.id << ": " << claim.text << " is always "
+                                                   << (outcomes[&claim].empty()    ? "silent"
+                                                       : *outcomes[&claim].begin() ? "met"
+                                                                                   : "missed");
+        }
+    }
+}
+
+// A run that died supports no claim of accuracy, smoothness or cost.
+TEST(Claims, AreNotMetByRunsThatDied) {
+    const Case& flow = cases::find("taylor_green");
+    std::mt19937_64 engine(20261124);
+    const std::set<std::string> fates{"XU-TG, Re 100 and 1000", "ASAI, volume"};
+    for (int world = 0; world < 50; ++world) {
+        std::vector<RunRecord> runs = random_world(flow, engine);
+        for (RunRecord& run : runs) {
+            run.survived = false;
+            run.errors.clear();
+        }
+        for (const Claim& claim : flow.claims) {
+            const bool conserves = claim.id.ends_with("pairing") || claim.id.ends_with("momentum");
+            if (const auto finding = claim.measure(runs);
+                finding && !conserves && !fates.contains(claim.id)) {
+                EXPECT_FALSE(finding->agrees) << claim.id << ": " << finding->ours;
+            }
+        }
+    }
 }
 
 // Real runs of two integrators of the same equations: their orders are known, and they are told apart.
