@@ -17,6 +17,13 @@ struct TimeOrder {
     std::string waiver{}; ///< reason for which the scheme is known not to show it
 };
 
+/// What the sums over pairs of a scheme keep to round-off on any arrangement of particles.
+struct Conserves {
+    bool momentum;
+    bool angular_momentum; ///< the forces between particles have no torque
+    bool energy;           ///< without viscosity, in the limit of a small time step
+};
+
 /// Declaration of a scheme: the algorithm as a list of stages. One file in solver/schemes/ defines one.
 struct Scheme {
     std::string_view name;
@@ -26,6 +33,7 @@ struct Scheme {
     bool compressible;     ///< needs a density that matches its pressure at the start
     std::vector<Key> keys; ///< "kernel", "h_over_dx" and "time_step" among them
     TimeOrder (*time_order)(const Settings&);
+    Conserves (*conserves)(const Settings&);
     /// Adds the stages to a simulation whose settings, constants, particles, velocity and, where the scheme
     /// has the field as state, pressure are set.
     void (*assemble_2d)(Simulation<2>&);

@@ -144,7 +144,9 @@ Tree budget_tree(const Budget& budget) {
             {"elastic_energy_start", if_any(budget.elastic_energy_start)},
             {"elastic_energy_end", if_any(budget.elastic_energy_end)},
             {"energy_drift", finite_or_null(budget.energy_drift)},
-            {"internal_torque", if_any(budget.internal_torque)}};
+            {"internal_torque", if_any(budget.internal_torque)},
+            {"claims", budget.claims},
+            {"lost", budget.lost}};
 }
 
 Tree history_tree(const std::vector<Deviation>& history) {

@@ -394,7 +394,7 @@ struct Members {
     std::string_view names;
 };
 
-constexpr std::array<Members, 34> members{{
+constexpr std::array<Members, 35> members{{
     {"", "a text", "command"},
     {"", "an object", "provenance"},
     {"", "a list", "cases studies runs fronts"},
@@ -428,6 +428,7 @@ constexpr std::array<Members, 34> members{{
     {"runs[].budget", "a number",
      "momentum_drift? kinetic_energy_start? kinetic_energy_end? elastic_energy_start? elastic_energy_end? "
      "energy_drift? internal_torque?"},
+    {"runs[].budget", "a text", "claims? lost?"},
     {"fronts[]", "a text", "group field norm cost"},
     {"fronts[]", "a list", "curves rows"},
     {"fronts[].curves[]", "a text", "scheme"},

@@ -31,6 +31,10 @@ struct Budget {
     /// |1/2 sum_ij r_ij x f_ij| / E_kin(0) at the time reached: the rate at which the forces between
     /// particles change angular momentum, where the scheme tells
     std::optional<double> internal_torque;
+    std::string claims{}; ///< what the scheme claims to conserve: "momentum, energy", or "nothing"
+    /// What of it this run lost: momentum or torque above 1e-10. (Energy is kept without viscosity only, in
+    /// the limit of a small step.)
+    std::string lost{};
 };
 
 /// How far a run is from the exact solution at one time.

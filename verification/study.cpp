@@ -432,6 +432,11 @@ int exit_status(const LadderResult& result) {
         }
         status = std::max(status, study.ended_unexpectedly ? 3 : 1);
     }
+    for (const RunRecord& run : result.runs) {
+        if (run.survived && !run.budget.lost.empty()) {
+            status = std::max(status, 1);
+        }
+    }
     for (const ClaimFinding& claim : result.claims) {
         if (claim.claim->binding && !claim.finding.agrees) {
             status = std::max(status, 1);

@@ -100,8 +100,9 @@ LadderResult run_ladder(const LadderRequest& request, const LadderProgress& prog
 std::vector<FieldStudy> judge_runs(std::span<const SceneRecord> scenes, std::span<const RunRecord> runs,
                                    Axis axis);
 
-/// Exit status of a ladder (cli.md): 0; 1 a verdict failed, or is inconclusive, without a waiver; 3 a run
-/// ended early unexpectedly.
+/// Exit status of a ladder (cli.md): 0; 1 a verdict failed, or is inconclusive, without a waiver, a goal of
+/// the project was missed, or a run lost what its scheme claims to conserve; 3 a run ended early
+/// unexpectedly.
 int exit_status(const LadderResult& result);
 
 } // namespace sphvv::verification

@@ -7,7 +7,9 @@ MEANING = ("Momentum drift: |P(t) − P(0)| over total mass times largest expect
            "Energy drift: change of the energy (kinetic and, of a compressible scheme, elastic) over the kinetic energy at the start; "
            "exact viscosity is part of it. Against exact decay: kinetic energy at t over the exact one at t, minus 1, so that what "
            "exact viscosity takes is out of it. Internal torque: |½ Σ r × f| of the forces between particles over the kinetic energy "
-           "at the start, at t. Closest pair: smallest distance of two particles during the run. – where a scheme has no such thing.")
+           "at the start, at t. Closest pair: smallest distance of two particles during the run. – where a scheme has no such thing. "
+           "Claims: what the scheme's sums over pairs conserve to round-off (energy: without viscosity, in the limit of a small step); "
+           "lost: what of it the run did not keep to 1e-10.")
 
 
 def table(names, group, dimension):
@@ -27,6 +29,6 @@ def table(names, group, dimension):
                Column("elastic_energy_start", "elastic energy, start", shown=False), Column("elastic_energy_end", "at t", shown=False),
                Column("energy_drift", "energy drift", "scientific"), Column("energy_error", "against exact decay", "scientific"),
                Column("internal_torque", "internal torque", "scientific"), Column("minimum_spacing", "closest pair", "significant", "dx"),
-               Column("how", "run"), Column("survived", "survived", "flag", shown=False)]
+               Column("claims", "claims"), Column("lost", "lost"), Column("how", "run"), Column("survived", "survived", "flag", shown=False)]
     return Table(names.unique(group.label, "budget"), f"what each scheme keeps, n = {numbers.integer(group.common_rung())}",
                  columns, rows, [MEANING], context=group.label)

@@ -36,6 +36,7 @@ STAGE = {"name": "text", "seconds": "number", "pair_evaluations": "number"}
 RUN_FIELD = {"name": "text", "bytes_per_particle": "number", "asked_by": "text"}
 BUDGET = {name + "?": "number" for name in ("momentum_drift", "kinetic_energy_start", "kinetic_energy_end", "elastic_energy_start",
                                             "elastic_energy_end", "energy_drift", "internal_torque")}
+BUDGET.update({"claims?": "text", "lost?": "text"})
 MARK = {"time": "number", "l2_velocity": "number", "l2_pressure": "number", "maximum_speed": "number",
         "maximum_speed_exact": "number", "energy_error": "number"}
 PICTURE = {"time?": "number", "box?": "numbers", **{name + "?": "numbers" for name in ("x", "y", "speed", "pressure")}}

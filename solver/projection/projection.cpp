@@ -298,6 +298,13 @@ void write_density_equations(Simulation<Dim>& s, Projection<Dim>& p, double tau_
     s.count_sweeps(weight_sweeps(p) + renormalisation_sweeps(p, p.schwaiger));
 }
 
+Conserves conserves(const Settings& settings) {
+    const bool central = settings.word("viscosity") == "monaghan_cleary";
+    const bool antisymmetric =
+        settings.word("gradient") == "symmetric" && (central || settings.word("laplacian") == "morris");
+    return {.momentum = antisymmetric, .angular_momentum = antisymmetric && central, .energy = false};
+}
+
 TimeOrder euler_order(const Settings& /*settings*/) {
     return {
         1, "forward Euler: viscosity of the old velocity, pressure constant over the step (Xu 2009 §2.2)",

@@ -90,6 +90,10 @@ double mean_density(const Simulation<Dim>& simulation, const Field& density);
 template <int Dim>
 void write_density_equations(Simulation<Dim>& simulation, Projection<Dim>& projection, double tau_squared);
 
+/// Pressures and viscous forces are antisymmetric with the symmetric gradient and any viscosity but
+/// Schwaiger's; they lie along the line of the pair with Monaghan-Cleary's. Energy: a projection takes some.
+Conserves conserves(const Settings& settings);
+
 /// Order in time of u^{n+1} = u^n + dt (...)(r* = r^n + dt u^n): one.
 TimeOrder euler_order(const Settings& settings);
 

@@ -24,6 +24,7 @@ const Scheme& isph_asai() {
                          "alpha, the share of the density error that a step takes off; the paper finds "
                          "0.1 to 0.2 at dx = 10 mm and far less at finer dx and the same dt")}),
         .time_order = projection::euler_order,
+        .conserves = projection::conserves,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

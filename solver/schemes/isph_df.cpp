@@ -12,6 +12,7 @@ const Scheme& isph_df() {
         .compressible = false,
         .keys = projection::keys(),
         .time_order = projection::euler_order,
+        .conserves = projection::conserves,
         .assemble_2d = projection::add_stages_at_moved_positions<2>,
         .assemble_3d = projection::add_stages_at_moved_positions<3>,
     };

@@ -111,6 +111,7 @@ const Scheme& isph_dfdi() {
                                     "density invariance goes on until max|rho0 - rho|/rho0 is below this"),
                         Key::integer("density_iterations", 20, 0, 1000, "of density invariance, at most")}),
         .time_order = projection::euler_order,
+        .conserves = projection::conserves,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

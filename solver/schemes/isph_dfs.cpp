@@ -116,6 +116,12 @@ void assemble(Simulation<Dim>& s) {
     s.add_stage("shifting", [fields](Simulation<Dim>& sim) { shift(sim, fields); });
 }
 
+/// A Taylor correction of the velocity is no force between particles.
+Conserves conserves(const Settings& settings) {
+    return settings.word("shift_correction") == "none" ? projection::conserves(settings)
+                                                       : Conserves{false, false, false};
+}
+
 } // namespace
 
 const Scheme& isph_dfs() {
@@ -133,6 +139,7 @@ const Scheme& isph_dfs() {
                         Key::word("shift_correction", "first", {"first", "second", "none"},
                                   "order of the Taylor correction of the shifted fields")}),
         .time_order = projection::euler_order,
+        .conserves = conserves,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

@@ -54,6 +54,7 @@ const Scheme& isph_di() {
         .compressible = false,
         .keys = projection::keys(),
         .time_order = projection::euler_order,
+        .conserves = projection::conserves,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

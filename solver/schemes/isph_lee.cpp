@@ -21,6 +21,7 @@ const Scheme& isph_lee() {
         .compressible = false,
         .keys = projection::keys_at_old_positions("quartic_spline", 1.3),
         .time_order = projection::euler_order,
+        .conserves = projection::conserves,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

@@ -411,6 +411,10 @@ const Scheme& isph_mls() {
              Key::number("pressure_tolerance", 1e-6, 1e-14, 0.1, "1",
                          "relative residual of the pressure solve")}),
         .time_order = time_order,
+        .conserves =
+            [](const Settings& /*settings*/) {
+                return Conserves{false, false, false};
+            },
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

@@ -207,6 +207,19 @@ TimeOrder time_order(const Settings& settings) {
     return {2, "midpoint predictor-corrector (Issa 2005 §3, scheme PC)"};
 }
 
+/// Energy: pairs of continuity and pressure force that are variational (Oger 2007). Torque: forces along the
+/// line of the pair have none; nor has the sum of the coherent renormalised ones, because the renormalised
+/// divergence of a rotation vanishes.
+Conserves conserves(const Settings& settings) {
+    const std::string& force = settings.word("pressure_force");
+    const std::string& rate = settings.word("continuity");
+    const bool coherent = force == "renormalised_coherent";
+    const bool antisymmetric = coherent || force == "sigma_1" || force == "sigma_2";
+    return {.momentum = antisymmetric,
+            .angular_momentum = antisymmetric && settings.word("viscosity") == "monaghan_cleary",
+            .energy = rate == (coherent ? "renormalised" : force) && antisymmetric};
+}
+
 } // namespace
 
 const Scheme& wcsph() {
@@ -251,6 +264,7 @@ const Scheme& wcsph() {
              Key::number("viscous_limit", 0.125, 1e-4, 10, "1", "dt <= this h^2/nu"),
              Key::number("force_limit", 0.25, 1e-4, 10, "1", "dt <= this sqrt(h/|du/dt|)")}),
         .time_order = time_order,
+        .conserves = conserves,
         .assemble_2d = assemble<2>,
         .assemble_3d = assemble<3>,
     };

@@ -127,6 +127,11 @@ struct Balance {
 constexpr double round_off = 1e-13;
 constexpr double clearly = 1e-5;
 
+Conserves claims(const Assignments& given) {
+    const Scheme& wcsph = schemes::find("wcsph");
+    return wcsph.conserves(Settings(wcsph.keys, given));
+}
+
 TEST(Energy, BalanceHoldsForTheVariationalPairsAndNoOthers) {
     in_2d_and_3d([&](auto dimension) {
         constexpr int Dim = dimension;
@@ -138,6 +143,8 @@ TEST(Energy, BalanceHoldsForTheVariationalPairsAndNoOthers) {
                     {{"continuity", continuity}, {"pressure_force", pressure_force}}, 0, false));
                 const double rate = balance.energy.relative();
                 std::printf("  %-22s %-13s %10.1e\n", pressure_force.c_str(), continuity.c_str(), rate);
+                EXPECT_EQ(variational.contains({continuity, pressure_force}),
+                          claims({{"continuity", continuity}, {"pressure_force", pressure_force}}).energy);
                 if (variational.contains({continuity, pressure_force})) {
                     EXPECT_LT(rate, round_off);
                 } else {
@@ -182,6 +189,8 @@ TEST(Momentum, IsConservedByAntisymmetricForcesAndNoOthers) {
                     {{"pressure_force", pressure_force}, {"viscosity", viscosity}}, 0.05, false));
                 const double rate = balance.largest_momentum_rate();
                 std::printf("  %-22s %-16s %10.1e\n", pressure_force.c_str(), viscosity.c_str(), rate);
+                EXPECT_EQ(antisymmetric.contains(pressure_force),
+                          claims({{"pressure_force", pressure_force}, {"viscosity", viscosity}}).momentum);
                 if (antisymmetric.contains(pressure_force)) {
                     EXPECT_LT(rate, round_off);
                 } else {
@@ -209,6 +218,9 @@ TEST(AngularMomentum, IsConservedByVariationalForcesAndViscosityAlongTheLineOfTh
                 const Balance<Dim> balance(scene);
                 const double rate = balance.torque() / balance.torque_size();
                 std::printf("  %-22s %-16s %10.1e\n", pressure_force.c_str(), viscosity.c_str(), rate);
+                EXPECT_TRUE(nu == 0 || (rate < round_off) == claims({{"pressure_force", pressure_force},
+                                                                     {"viscosity", viscosity}})
+                                                                 .angular_momentum);
                 if (torque_free.contains(pressure_force) && viscosity != "morris") {
                     EXPECT_LT(rate, round_off);
                 } else {

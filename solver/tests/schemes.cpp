@@ -230,6 +230,29 @@ TEST_P(EveryScheme, StaysAtRest) {
     });
 }
 
+// Round-off where the declaration says so, and clearly more where it does not.
+TEST_P(EveryScheme, KeepsTheMomentumThatItClaims) {
+    const Settings settings(scheme.keys, variant.given);
+    for (const auto& [momentum, word] : {std::pair{true, "symmetric"}, {false, ""}}) {
+        Assignments given = variant.given;
+        if (momentum && has_key(scheme, "gradient") && !given.contains("gradient")) {
+            given["gradient"] = word;
+        } else if (momentum) {
+            continue;
+        }
+        Simulation<2> scene = flowing_scene<2>(scheme, given, 16, 0.2);
+        scheme.assemble(scene);
+        const auto start = solver::momentum(scene);
+        for (int step = 0; step < 3; ++step) {
+            advance(scene);
+        }
+        const auto end = solver::momentum(scene);
+        const double drift = std::hypot(end[0] - start[0], end[1] - start[1]); // of M U = 1 kg m/s
+        EXPECT_EQ(drift < 1e-13, scheme.conserves(scene.settings).momentum) << drift;
+        EXPECT_TRUE(drift < 1e-13 || drift > 1e-9) << drift;
+    }
+}
+
 // A second observer sees the same flow: to round-off and to the tolerance of the pressure solve.
 TEST_P(EveryScheme, IsTheSameForAMovingObserver) {
     in_2d_and_3d([&](auto dimension) {
