@@ -14,7 +14,7 @@ MEANING = ("Momentum drift: |P(t) − P(0)| over total mass times largest expect
 
 def table(names, group, dimension):
     """One row a scheme, at the finest common rung; None where no run has a budget."""
-    runs = [run for run in group.compared_runs() if any(value is not None for value in run["budget"].values())]
+    runs = [run for run in group.compared_runs() if any(value not in (None, "") for value in run["budget"].values())]
     if not runs:
         return None
     rows = [{"scheme": run["scheme"], "n": run["n"], "seed": run["seed"], "end_time": run["end_time"], **run["budget"],

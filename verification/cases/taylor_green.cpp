@@ -568,7 +568,10 @@ std::vector<Claim> claims() {
               "Xu 2009 §4.1", re_100, dfdi_and_dfs_accurate),
         claim("XU-TG, Re 100 and 1000", "ISPH_DF loses its arrangement whatever the time step", "stated",
               "Xu 2009 §4.1", re_100_1000, clustering_at_any_step),
-        claim("XU-TG, Re 10", "operators at the old positions (Lee 2008) give the same results as ISPH_DF",
+        claim("XU-TG, Re 10",
+              "operators at the old positions (Lee 2008, who also moves with the new velocity alone) give "
+              "the same "
+              "results as ISPH_DF",
               "stated", "Xu 2009 §2.2", re_10, same_at_old_positions),
         claim("XU-TG, Re 100 and 1000",
               "ISPH_DI is stable, but under-predicts (Re 100) or is noisy (Re 1000)", "figure",
