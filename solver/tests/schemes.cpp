@@ -513,10 +513,10 @@ const std::array inventories{
     Inventory{"isph_mls",
               {},
               {{"time_step", 0},
-               {"rates_at_start", 5}, // of the first step only
-               {"runge_kutta", 5},
+               {"rates_at_start", 6}, // of the first step only
+               {"runge_kutta", 6},
                {"neighbours", 0},
-               {"rates", 5}},
+               {"rates", 6}},
               {"position", "velocity", "pressure", "divergence_integral", "repulsion_strength",
                "drift_velocity", "acceleration", "divergence_rate"},
               {"step_start", "step_increment"},

@@ -633,14 +633,20 @@ TEST(Runs, BudgetsStandInTheDocument) {
                   .elastic_energy_start = {},
                   .elastic_energy_end = 2,
                   .energy_drift = std::nan(""),
-                  .internal_torque = 0.5};
+                  .internal_torque = 0.5,
+                  .claims = "momentum, energy",
+                  .lost = "momentum"};
+    EXPECT_EQ(exit_status(result), 0);
+    run.survived = true;
     result.runs.push_back(run);
     const LadderResult results[] = {result};
     const auto document = result_document("sphvv verify", current_provenance(), 1, results);
     EXPECT_EQ(
         document["runs"][0]["budget"].dump(),
         R"({"momentum_drift":0.125,"kinetic_energy_start":4.0,"kinetic_energy_end":3.0,)"
-        R"("elastic_energy_start":null,"elastic_energy_end":2.0,"energy_drift":null,"internal_torque":0.5})");
+        R"("elastic_energy_start":null,"elastic_energy_end":2.0,"energy_drift":null,"internal_torque":0.5,)"
+        R"("claims":"momentum, energy","lost":"momentum"})");
+    EXPECT_EQ(exit_status(result), 1) << "what a scheme claims to conserve was lost";
 }
 
 TEST(Fronts, WorkIsPairEvaluationsAndMatrixEntries) {
@@ -713,8 +719,8 @@ TEST(Runs, KeepTheirHistoryAndWhereAskedTheirParticles) {
     EXPECT_EQ(run.picture->time, run.time);
     EXPECT_EQ(run.picture->x.size(), 144U);
     EXPECT_EQ(run.picture->pressure.size(), 144U);
-    EXPECT_EQ(*std::max_element(run.picture->speed.begin(), run.picture->speed.end()),
-              run.history.back().maximum_speed);
+    EXPECT_DOUBLE_EQ(*std::max_element(run.picture->speed.begin(), run.picture->speed.end()),
+                     run.history.back().maximum_speed);
     scene.picture = false;
     EXPECT_FALSE(run_scene(scene).picture);
 
