@@ -321,7 +321,8 @@ def budget(scheme, level, time):
     elastic = {"elastic_energy_start": 0.3, "elastic_energy_end": 0.8, "internal_torque": 3.6e-4} if scheme.startswith("wcsph") else {}
     end = 250 * math.exp(-2 * DECAY * time) * (1 + 2 * level * time)
     return {"momentum_drift": 2.5e-4 * level, "kinetic_energy_start": 250.0, "kinetic_energy_end": end, "energy_drift": end / 250 - 1,
-            "claims": "momentum, energy" if scheme.startswith("wcsph") else "nothing", "lost": "", **elastic}
+            "claims": "momentum, angular momentum, energy" if scheme.startswith("wcsph") else "momentum, angular momentum" if scheme == "isph_lee"
+            else "nothing", "lost": "momentum, angular momentum" if scheme == "wcsph" else "momentum" if scheme == "isph_lee" else "", **elastic}
 
 
 def variants(across=40):

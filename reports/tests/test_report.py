@@ -12,7 +12,7 @@ import unittest
 import xml.dom.minidom
 
 import synthetic
-from sphvv_report import figures, findings, numbers, output, results
+from sphvv_report import budgets, figures, findings, numbers, output, results
 from sphvv_report.__main__ import main
 from sphvv_report.tables import Column, Names, Table, latex_text, markdown_text
 
@@ -405,6 +405,15 @@ class Variants(WholePage, unittest.TestCase):
         self.assertEqual(rows["isph_df"]["n"], "40")
         self.assertIn("kinetic energy, start [J/m]", self.files["tables/taylor_green-re-100__budget.md"].decode())
         self.assertIn("Momentum drift: |P(t) − P(0)|", self.text)
+        self.assertEqual(rows["wcsph"]["kept"], "momentum: lost, angular momentum: lost, energy: viscous")
+        self.assertEqual(rows["isph_lee"]["kept"], "momentum: lost, angular momentum: not measured")
+        self.assertEqual(rows["isph_dfs"]["kept"], "")
+
+    def test_budget_words(self):
+        tells = {"claims": "momentum, angular momentum", "momentum_drift": 1e-16, "internal_torque": 1e-17}
+        self.assertEqual(budgets.kept(dict(tells, lost="")), "momentum: kept, angular momentum: kept")
+        self.assertEqual(budgets.kept(dict(tells, lost="angular momentum")), "momentum: kept, angular momentum: lost")
+        self.assertIsNone(budgets.kept({"momentum_drift": 1e-16}))
 
     def test_work(self):
         self.assertIn("Front of velocity error against work (pairs + matrix entries)", self.text)
