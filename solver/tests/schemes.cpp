@@ -1087,6 +1087,57 @@ TEST(IsphDfdi, StoresThePressureItself) {
     EXPECT_NEAR(along / squares, 1, 0.1);
 }
 
+/// Velocities, in the order of identity, after t = 0.04 in that many steps.
+std::vector<double> velocities_after(const Assignments& given, int steps) {
+    const Scheme& scheme = schemes::find("wcsph");
+    Assignments stepped = given;
+    stepped["time_step"] = shortest(0.04 / steps);
+    Simulation<2> scene = flowing_scene<2>(scheme, stepped, 14, 0.1);
+    scene.end_time = 0.04;
+    scheme.assemble(scene);
+    while (scene.time < scene.end_time) {
+        advance(scene);
+    }
+    EXPECT_EQ(scene.step, steps);
+    const std::size_t count = scene.particles.size();
+    std::vector<double> u(2 * count);
+    for (std::size_t k = 0; k < count; ++k) {
+        for (int d = 0; d < 2; ++d) {
+            u[2 * scene.particles.id[k] + d] = scene.particles.velocity[d][k];
+        }
+    }
+    return u;
+}
+
+// By the differences of runs whose steps are halved each time.
+TEST(Wcsph, HasTheOrderInTimeThatItDeclares) {
+    const Scheme& scheme = schemes::find("wcsph");
+    const int threads = omp_get_max_threads();
+    omp_set_num_threads(1); // 196 particles are no work for two
+    for (const Assignments& given : {Assignments{{"integrator", "explicit"}},
+                                     {{"integrator", "predictor_corrector"}},
+                                     {{"integrator", "verlet"}, {"restart_interval", "3"}},
+                                     {{"integrator", "verlet"}, {"restart_interval", "4"}},
+                                     {{"integrator", "verlet"}, {"restart_interval", "1000000"}}}) {
+        const double order = scheme.time_order(Settings(scheme.keys, given)).order;
+        SCOPED_TRACE(given.begin()->second + ", order " + shortest(order));
+        std::vector<double> before = velocities_after(given, 40);
+        std::vector<double> differences;
+        for (const int steps : {80, 160, 320, 640}) {
+            const std::vector<double> u = velocities_after(given, steps);
+            double squares = 0;
+            for (std::size_t i = 0; i < u.size(); ++i) {
+                squares += (u[i] - before[i]) * (u[i] - before[i]);
+            }
+            differences.push_back(std::sqrt(squares));
+            before = u;
+        }
+        EXPECT_NEAR(std::log2(differences[1] / differences[2]), order, 0.2);
+        EXPECT_NEAR(std::log2(differences[2] / differences[3]), order, 0.1);
+    }
+    omp_set_num_threads(threads);
+}
+
 TEST(IsphLee, MovesParticlesWithTheNewVelocityAndConservesMomentum) {
     for (const std::string viscosity : {"laplacian", "monaghan_cleary"}) {
         in_2d_and_3d([&](auto dimension) {
