@@ -18,8 +18,8 @@ Field& Particles<Dim>::field(std::string_view name, int components, Lifetime lif
                              std::string_view asked_by) {
     auto found = std::find_if(fields_.begin(), fields_.end(), [&](const Field& f) { return f.name == name; });
     if (found == fields_.end()) {
-        Field fresh{std::string(name), lifetime, {}, {}};
-        fresh.components.assign(components, std::vector<double>(size(), 0.0));
+        Field fresh{std::string(name), lifetime, {}, size(), {}};
+        fresh.components.assign(components, std::vector<double>(with_images(), 0.0));
         fields_.push_back(std::move(fresh));
         found = fields_.end() - 1;
     }
@@ -54,8 +54,19 @@ std::size_t Particles<Dim>::bytes_per_particle() const {
 }
 
 template <int Dim>
+void Particles<Dim>::set_images(std::size_t count) {
+    images_ = count;
+    for (Field& field : fields_) {
+        for (std::vector<double>& component : field.components) {
+            component.resize(with_images());
+        }
+    }
+}
+
+template <int Dim>
 void Particles<Dim>::permute(std::span<const int> order) {
     const int count = static_cast<int>(order.size());
+    set_images(0);
     permuted_.resize(order.size());
     for (Field& field : fields_) {
         if (field.lifetime != Lifetime::state) {

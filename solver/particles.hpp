@@ -21,6 +21,7 @@ struct Field {
     std::string name;
     Lifetime lifetime;
     std::vector<std::string> asked_by;
+    std::size_t particles; ///< the values behind theirs are those of images
     std::vector<std::vector<double>> components;
 
     double* operator[](int component) { return components[component].data(); }
@@ -28,10 +29,10 @@ struct Field {
     std::size_t bytes_per_particle() const { return components.size() * sizeof(double); }
 };
 
-/// target += scale * increment, component by component.
+/// target += scale * increment, component by component, at the particles (not at their images).
 template <int Components>
 void add_scaled(Field& target, double scale, const Field& increment) {
-    const int count = static_cast<int>(target.components[0].size());
+    const int count = static_cast<int>(target.particles);
     for (int c = 0; c < Components; ++c) {
         double* to = target[c];
         const double* from = increment[c];
@@ -45,7 +46,7 @@ void add_scaled(Field& target, double scale, const Field& increment) {
 /// Largest Euclidean norm of a vector field; 0 where every component is not a number.
 template <int Dim>
 double largest_norm(const Field& field) {
-    const int count = static_cast<int>(field.components[0].size());
+    const int count = static_cast<int>(field.particles);
     double squared_maximum = 0;
 #pragma omp parallel for schedule(static) reduction(max : squared_maximum)
     for (int i = 0; i < count; ++i) {
@@ -73,6 +74,10 @@ public:
     ~Particles() = default;
 
     std::size_t size() const { return id.size(); }
+    /// Particles and their images beyond walls: the length of every component of a field.
+    std::size_t with_images() const { return size() + images_; }
+    /// Makes room for that many images, behind the particles, in every field.
+    void set_images(std::size_t count);
 
     /// The field of that name, allocated (zero) when first asked for. A field that anyone wants as state is
     /// state.
@@ -86,7 +91,7 @@ public:
     /// Bytes of all fields and the identity, per particle.
     std::size_t bytes_per_particle() const;
 
-    /// Reorders identity and state fields: particle k becomes what was particle order[k].
+    /// Reorders identity and state fields: particle k becomes what was particle order[k]. Images are dropped.
     void permute(std::span<const int> order);
 
     std::vector<int> id; ///< rank at the start of the run
@@ -94,6 +99,7 @@ public:
 private:
     std::deque<Field> fields_; // a deque, so that references that stages hold stay valid
     std::vector<double> permuted_;
+    std::size_t images_ = 0;
 
 public:
     Field& position; ///< m

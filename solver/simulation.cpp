@@ -146,25 +146,52 @@ void wrap_positions(Simulation<Dim>& simulation) {
     }
 }
 
+namespace {
+
+/// The box, and where it has walls as much more of it as images need.
+template <int Dim>
+Box<Dim> box_with_images(const Simulation<Dim>& simulation, double radius) {
+    Box<Dim> box = simulation.box;
+    for (int d = 0; d < Dim; ++d) {
+        if (!simulation.walls.empty() && !box.periodic[d]) {
+            box.low[d] -= radius;
+            box.high[d] += radius;
+        }
+    }
+    return box;
+}
+
+template <int Dim>
+void make_images_and_list(Simulation<Dim>& simulation, double skin) {
+    Particles<Dim>& particles = simulation.particles;
+    const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
+    if (!simulation.walls.empty()) {
+        simulation.images.mirror(simulation.walls, radius, simulation.time, particles);
+    }
+    simulation.neighbours.build(box_with_images(simulation, radius), *simulation.kernel,
+                                simulation.smoothing_length, skin, constant_arrays<Dim>(particles.position),
+                                static_cast<int>(particles.size()),
+                                static_cast<int>(particles.with_images()));
+}
+
+} // namespace
+
 template <int Dim>
 void find_neighbours(Simulation<Dim>& simulation, double skin) {
     wrap_positions(simulation);
     Particles<Dim>& particles = simulation.particles;
-    const int count = static_cast<int>(particles.size());
     const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
     CellGrid<Dim> grid;
-    grid.bin(simulation.box, radius, constant_arrays<Dim>(particles.position), count);
+    grid.bin(box_with_images(simulation, radius), radius, constant_arrays<Dim>(particles.position),
+             static_cast<int>(particles.size()));
     particles.permute(grid.order());
-    simulation.neighbours.build(simulation.box, *simulation.kernel, simulation.smoothing_length, skin,
-                                constant_arrays<Dim>(particles.position), count);
+    make_images_and_list(simulation, skin);
 }
 
 template <int Dim>
 void renew_neighbours(Simulation<Dim>& simulation) {
     wrap_positions(simulation);
-    const Particles<Dim>& particles = simulation.particles;
-    simulation.neighbours.build(simulation.box, *simulation.kernel, simulation.smoothing_length, 0,
-                                constant_arrays<Dim>(particles.position), static_cast<int>(particles.size()));
+    make_images_and_list(simulation, 0);
 }
 
 template <int Dim>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "sphvv/solver/boundaries/images.hpp"
 #include "sphvv/solver/box.hpp"
 #include "sphvv/solver/neighbours/neighbour_list.hpp"
 #include "sphvv/solver/particles.hpp"
@@ -55,15 +56,18 @@ struct Simulation {
     Box<Dim> box;
     Particles<Dim> particles;
     NeighbourList<Dim> neighbours;
-    Settings settings; ///< of the scheme
+    std::vector<Wall<Dim>> walls;
+    Images<Dim> images; ///< of particles near walls, made with the neighbour list
+    Settings settings;  ///< of the scheme
     const Kernel* kernel = nullptr;
 
-    double particle_spacing = 0;    ///< dx, m
-    double smoothing_length = 0;    ///< h, m
-    double density = 0;             ///< reference density rho_0, kg/m3
-    double kinematic_viscosity = 0; ///< nu, m2/s
-    double reference_speed = 0;     ///< U, m/s: the largest speed that the scene expects
-    double particle_mass = 0;       ///< kg (per metre of depth in 2-D)
+    double particle_spacing = 0;          ///< dx, m
+    double smoothing_length = 0;          ///< h, m
+    double density = 0;                   ///< reference density rho_0, kg/m3
+    double kinematic_viscosity = 0;       ///< nu, m2/s
+    double reference_speed = 0;           ///< U, m/s: the largest speed that the scene expects
+    std::array<double, Dim> body_force{}; ///< m/s2, the same everywhere
+    double particle_mass = 0;             ///< kg (per metre of depth in 2-D)
 
     double time = 0;                 ///< s
     double end_time = 0;             ///< s
@@ -86,6 +90,8 @@ struct Simulation {
     void add_stage(std::string name, std::function<void(Simulation&)> run) {
         stages.push_back({std::move(name), std::move(run)});
     }
+    /// Values of a field at the images of particles, which every sweep over it reads.
+    void fill_images(Field& field, Parity parity) const { images.fill(field, parity); }
     /// Books `sweeps` visits of every pair in the neighbour list.
     void count_sweeps(int sweeps) { work.pair_evaluations += sweeps * neighbours.pairs(); }
 };
@@ -104,12 +110,12 @@ double even_step(const Simulation<Dim>& simulation, double limit);
 template <int Dim>
 void wrap_positions(Simulation<Dim>& simulation);
 
-/// Wraps, sorts the particles by cell, and builds the neighbour list.
+/// Wraps, sorts the particles by cell, makes their images beyond walls, and builds the neighbour list.
 template <int Dim>
 void find_neighbours(Simulation<Dim>& simulation, double skin);
 
-/// Wraps and builds the neighbour list anew within a step: the particles keep their order, so that fields
-/// formed earlier in the step stay theirs.
+/// Wraps and makes images and neighbour list anew within a step: the particles keep their order, so that
+/// fields formed earlier in the step stay theirs.
 template <int Dim>
 void renew_neighbours(Simulation<Dim>& simulation);
 

@@ -6,7 +6,9 @@
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace sphvv::solver {
 namespace {
@@ -93,7 +95,9 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
     const NeighbourList<Dim>& neighbours = *problem.neighbours_;
     const CellGrid<Dim>& grid = neighbours.grid();
     const int cells = grid.cell_count();
-    const auto order = grid.order();
+    std::vector<int> members; // particles cell by cell
+    std::ranges::copy_if(grid.order(), std::back_inserter(members),
+                         [&](int i) { return i < problem.size(); });
     std::vector<int> first(cells + 1, 0);
     for (int i = 0; i < problem.size(); ++i) {
         ++first[grid.cell_of(i) + 1];
@@ -117,12 +121,12 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
             };
             touch(c);
             for (int m = first[c]; m < first[c + 1]; ++m) {
-                const int i = order[m];
+                const int i = members[m];
                 const auto row = neighbours.row(i);
                 const double* w = problem.weights_.data() + neighbours.row_start(i);
                 sums[c] += problem.diagonal_[i];
                 for (int k = 0; k < row.count; ++k) {
-                    const int other = grid.cell_of(row.index[k]);
+                    const int other = grid.cell_of(problem.unknown_of(row.index[k]));
                     touch(other);
                     sums[other] -= w[k];
                 }
@@ -136,7 +140,7 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
             touched_cells.clear();
         }
     }
-    pinned_cell = grid.cell_of(order[0]);
+    pinned_cell = grid.cell_of(members[0]);
     std::vector<Eigen::Triplet<double>> entries;
     for (int c = 0; c < cells; ++c) {
         const bool empty = first[c] == first[c + 1];
@@ -222,8 +226,9 @@ template <int Dim>
 PressurePoisson<Dim>& PressurePoisson<Dim>::operator=(PressurePoisson&&) noexcept = default;
 
 template <int Dim>
-void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours) {
+void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours, const Images<Dim>& images) {
     neighbours_ = &neighbours;
+    images_ = &images;
     weights_.resize(neighbours.entries());
     diagonal_.resize(neighbours.size());
     source_.resize(neighbours.size());
@@ -231,6 +236,12 @@ void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours) {
 
 template <int Dim>
 void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
+    if (!images_->empty()) {
+        with_images_.assign(x, x + size());
+        with_images_.resize(size() + images_->size());
+        images_->fill(with_images_.data(), size());
+        x = with_images_.data();
+    }
     for_each_row(*neighbours_, [&](int i, const auto& row) {
         const double* w = weights_.data() + neighbours_->row_start(i);
         Lanes total{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "sphvv/solver/boundaries/images.hpp"
 #include "sphvv/solver/neighbours/neighbour_list.hpp"
 
 #include <Eigen/Core>
@@ -20,6 +21,9 @@ struct LinearSolve {
 
 /// The discrete Poisson problem on the particles: sum_j w_ij (p_i - p_j) = b_i, with weights that a Laplacian
 /// operator writes into the layout of the neighbour list.
+///
+/// An image of j beyond a wall has the pressure of j: grad p . n = 0 at the wall, in which the acceleration
+/// of the wall-normal velocity that the source holds includes that by gravity.
 ///
 /// The matrix is never copied: products run over the list. Constants are in its null space (no wall, no free
 /// surface), so the mean of the right-hand side is projected out, and so is the mean of each product where
@@ -50,7 +54,7 @@ public:
 
     /// Makes room for the pairs of a list; the operator then writes row i's weights to weights(i) and their
     /// sum to diagonal(i).
-    void reset(const NeighbourList<Dim>& neighbours);
+    void reset(const NeighbourList<Dim>& neighbours, const Images<Dim>& images);
     double* weights(int i) { return weights_.data() + neighbours_->row_start(i); }
     double& diagonal(int i) { return diagonal_[i]; }
     double& source(int i) { return source_[i]; }
@@ -73,7 +77,14 @@ private:
     struct CoarseSpace;
 
     Options options_;
+    /// The particle whose pressure a neighbour has.
+    int unknown_of(int neighbour) const {
+        return neighbour < size() ? neighbour : images_->particle(neighbour - size());
+    }
+
     const NeighbourList<Dim>* neighbours_ = nullptr;
+    const Images<Dim>* images_ = nullptr;
+    mutable std::vector<double> with_images_; // x of a product, and its values at the images
     std::vector<double> weights_;
     Eigen::VectorXd diagonal_;
     Eigen::VectorXd source_;

@@ -14,20 +14,21 @@ constexpr double far_away = 1e100;
 
 template <int Dim>
 void NeighbourList<Dim>::build(const Box<Dim>& box, const Kernel& kernel, double h, double skin,
-                               std::array<const double*, Dim> position, int count) {
+                               std::array<const double*, Dim> position, int count, int with_images) {
     kernel_ = &kernel;
     h_ = h;
     count_ = count;
+    with_images_ = with_images;
     position_ = position;
     support_radius_ = kernel.support * h;
     skin_width_ = skin * support_radius_;
     const double radius = support_radius_ + skin_width_;
-    grid_.bin(box, radius, position, count);
+    grid_.bin(box, radius, position, with_images);
     const auto order = grid_.order();
     for (int d = 0; d < Dim; ++d) {
-        binned_[d].resize(count);
+        binned_[d].resize(with_images);
 #pragma omp parallel for schedule(static)
-        for (int k = 0; k < count; ++k) {
+        for (int k = 0; k < with_images; ++k) {
             binned_[d][k] = position[d][order[k]];
         }
     }
@@ -184,7 +185,7 @@ bool NeighbourList<Dim>::follow(std::array<const double*, Dim> displacement) {
     double farthest = 0;
     bool sound = true;
 #pragma omp parallel for schedule(static) reduction(max : farthest) reduction(&& : sound)
-    for (int i = 0; i < count_; ++i) {
+    for (int i = 0; i < with_images_; ++i) {
         double squared = 0;
         for (int d = 0; d < Dim; ++d) {
             squared += displacement[d][i] * displacement[d][i];

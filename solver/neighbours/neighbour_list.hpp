@@ -29,9 +29,14 @@ public:
     };
 
     /// Finds all pairs closer than (1 + skin) times the support radius; positions must be finite and inside
-    /// the box.
+    /// the box. The first `count` of `with_images` positions are the particles, which have rows; the others
+    /// only occur as neighbours.
     void build(const Box<Dim>& box, const Kernel& kernel, double h, double skin,
-               std::array<const double*, Dim> position, int count);
+               std::array<const double*, Dim> position, int count, int with_images);
+    void build(const Box<Dim>& box, const Kernel& kernel, double h, double skin,
+               std::array<const double*, Dim> position, int count) {
+        build(box, kernel, h, skin, position, count, count);
+    }
 
     /// Follows particles that moved since the list was built: r_ij += d_i - d_j, F_ij anew. Returns false,
     /// and leaves the list as it was, if some moved so far that pairs may be missing (2 max|d| > skin) or by
@@ -95,6 +100,7 @@ private:
     double skin_width_ = 0;
     double support_radius_ = 0;
     int count_ = 0;
+    int with_images_ = 0;
     std::int64_t pairs_ = 0;
     double minimum_distance_ = 0;
     int closest_particle_ = -1;

@@ -73,6 +73,13 @@ void with_volume(const Simulation<Dim>& s, const Projection<Dim>& p, const Body&
     }
 }
 
+template <int Dim>
+void fill_density_images(const Simulation<Dim>& s, const Projection<Dim>& p) {
+    if (p.density != nullptr) {
+        s.fill_images(*p.density, Parity::even);
+    }
+}
+
 /// L_i, or the identity where nothing needs it: at a constant density the one that the viscosity left.
 template <int Dim>
 Matrix<Dim> renormalisation_at(const Projection<Dim>& p, bool needed, int i, const Row<Dim>& /*row*/,
@@ -227,6 +234,7 @@ void drift(Simulation<Dim>& s) {
 
 template <int Dim>
 void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
+    s.fill_images(s.particles.velocity, Parity::velocity);
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const auto next = arrays<Dim>(p.velocity_next);
     const double dt_nu = dt * s.kinematic_viscosity;
@@ -244,7 +252,7 @@ void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
             laplacian = viscous_term<Dim>(p, i, row, u, Matrix<Dim>::Identity());
         }
         for (int d = 0; d < Dim; ++d) {
-            next[d][i] = u[d][i] + dt_nu * laplacian[d];
+            next[d][i] = u[d][i] + dt_nu * laplacian[d] + dt * s.body_force[d];
         }
     });
     s.count_sweeps((needs_L ? 1 : 0) + (schwaiger ? 3 : 1));
@@ -267,11 +275,13 @@ double mean_density(const Simulation<Dim>& s, const Field& density) {
 
 template <int Dim>
 void write_divergence_equations(Simulation<Dim>& s, Projection<Dim>& p) {
+    s.fill_images(p.velocity_next, Parity::velocity);
+    fill_density_images(s, p);
     const auto u = constant_arrays<Dim>(p.velocity_next);
     // The density is in the weights where it varies.
     const double scale = p.density != nullptr ? -1 / s.time_step : -s.density / s.time_step;
     const bool needs_L = p.gradient == Gradient::normalised || p.schwaiger;
-    p.poisson.reset(s.neighbours);
+    p.poisson.reset(s.neighbours, s.images);
     p.poisson.set_round_off(sum_round_off * std::abs(scale) * s.reference_speed / s.smoothing_length);
     with_volume(s, p, [&](const auto& volume) {
         for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
@@ -285,10 +295,11 @@ void write_divergence_equations(Simulation<Dim>& s, Projection<Dim>& p) {
 
 template <int Dim>
 void write_density_equations(Simulation<Dim>& s, Projection<Dim>& p, double tau_squared) {
+    fill_density_images(s, p);
     const MassOverDensity particles{s.particle_mass, (*p.density)[0]};
     const double scale = 1 / (s.density * tau_squared);
     const double mean = mean_density(s, *p.density);
-    p.poisson.reset(s.neighbours);
+    p.poisson.reset(s.neighbours, s.images);
     p.poisson.set_round_off(sum_round_off * scale * s.density);
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         const Matrix<Dim> L = renormalisation_at<Dim>(p, p.schwaiger, i, row, particles);
@@ -326,8 +337,10 @@ void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pre
 }
 
 template <int Dim>
-void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, const Field& pressure,
-                                double scale, Field& target) {
+void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, Field& pressure, double scale,
+                                Field& target) {
+    s.fill_images(pressure, Parity::even);
+    fill_density_images(s, p);
     const auto changed = arrays<Dim>(target);
     const double* rho = p.density != nullptr ? (*p.density)[0] : nullptr;
     with_volume(s, p, [&](const auto& volume) {
@@ -352,7 +365,7 @@ void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, co
     template void write_divergence_equations(Simulation<Dim>&, Projection<Dim>&);                            \
     template void write_density_equations(Simulation<Dim>&, Projection<Dim>&, double);                       \
     template void solve_poisson(Simulation<Dim>&, PressurePoisson<Dim>&, Field&);                            \
-    template void subtract_pressure_gradient(Simulation<Dim>&, const Projection<Dim>&, const Field&, double, \
+    template void subtract_pressure_gradient(Simulation<Dim>&, const Projection<Dim>&, Field&, double,       \
                                              Field&);
 SPHVV_INSTANTIATE(2)
 SPHVV_INSTANTIATE(3)

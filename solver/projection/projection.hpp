@@ -66,7 +66,8 @@ void choose_time_step(Simulation<Dim>& simulation);
 template <int Dim>
 void drift(Simulation<Dim>& simulation);
 
-/// u* = u + dt nu Laplacian u on the current neighbours, at the density rho_0; writes L_i where it is kept.
+/// u* = u + dt (nu Laplacian u + f), f the body force, on the current neighbours, at the density rho_0;
+/// writes L_i where it is kept.
 template <int Dim>
 void form_viscous_velocity(Simulation<Dim>& simulation, Projection<Dim>& projection, double dt);
 
@@ -105,6 +106,6 @@ void solve_poisson(Simulation<Dim>& simulation, PressurePoisson<Dim>& poisson, F
 /// target -= scale grad p/rho: of the velocity with scale = dt, of the position with tau^2.
 template <int Dim>
 void subtract_pressure_gradient(Simulation<Dim>& simulation, const Projection<Dim>& projection,
-                                const Field& pressure, double scale, Field& target);
+                                Field& pressure, double scale, Field& target);
 
 } // namespace sphvv::solver::projection

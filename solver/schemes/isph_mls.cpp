@@ -237,7 +237,9 @@ void lower(std::atomic<int>& value, int candidate) {
 template <int Dim>
 void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
     const NeighbourList<Dim>& list = s.neighbours;
-    f.poisson.reset(list);
+    f.poisson.reset(list, s.images);
+    s.fill_images(s.particles.velocity, Parity::velocity);
+    s.fill_images(f.strength, Parity::even);
     for (auto& weights : f.gradient) {
         weights.resize(list.entries());
     }
@@ -268,7 +270,7 @@ void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
         const Vector<Dim> rate = s.kinematic_viscosity * laplacian + G * shift;
         for (int d = 0; d < Dim; ++d) {
             w[d][i] = u[d][i] + shift[d];
-            a[d][i] = rate[d];
+            a[d][i] = rate[d] + s.body_force[d];
         }
         f.divergence_rate[0][i] = f.kappa * G.trace();
         f.poisson.source(i) =
@@ -287,6 +289,7 @@ template <int Dim>
 void evaluate(Simulation<Dim>& s, Fields<Dim>& f) {
     evaluate_without_pressure(s, f);
     projection::solve_poisson(s, f.poisson, f.pressure);
+    s.fill_images(f.pressure, Parity::even);
     const auto a = arrays<Dim>(f.acceleration);
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         const Vector<Dim> gradient =

@@ -24,7 +24,8 @@ using Preconditioner = typename PressurePoisson<Dim>::Preconditioner;
 template <int Dim>
 void write_weights(PressurePoisson<Dim>& problem, const NeighbourList<Dim>& list, double volume,
                    bool symmetric) {
-    problem.reset(list);
+    static const Images<Dim> no_images;
+    problem.reset(list, no_images);
     for (int i = 0; i < list.size(); ++i) {
         const auto row = list.row(i);
         const UniformVolume V{volume};

@@ -82,7 +82,7 @@ void sweep_acceleration(Simulation<Dim>& s, Rates<Dim>& f) {
         const Vector<Dim> total = momentum_weakly_compressible<Dim, PressureForce, ViscousForce>(
             row, i, fields, s.particle_mass, mu, f.eta_squared);
         for (int d = 0; d < Dim; ++d) {
-            a[d][i] = total[d];
+            a[d][i] = total[d] + s.body_force[d];
         }
     });
 }
@@ -162,7 +162,10 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
 
 /// 1/rho and, where it is read, p/rho^2.
 template <int Dim>
-void update_volumes(Rates<Dim>& f, int count) {
+void update_volumes(const Simulation<Dim>& s, Rates<Dim>& f) {
+    s.fill_images(f.density, Parity::even);
+    s.fill_images(f.pressure, Parity::even);
+    const int count = static_cast<int>(s.particles.with_images());
     const double* rho = f.density[0];
     double* volume = f.specific_volume[0];
     if (f.pressure_over_squared_density == nullptr) {
@@ -197,12 +200,17 @@ void update_renormalisation(const Simulation<Dim>& s, Rates<Dim>& f) {
             eigenvalue[i] = L ? 1 / of.eigenvalues().maxCoeff() : 0;
         }
     });
+    s.fill_images(*f.renormalisation, Parity::tensor);
+    if (eigenvalue != nullptr) {
+        s.fill_images(*f.lowest_eigenvalue, Parity::even);
+    }
 }
 
 /// acceleration(density, pressure, velocity) on the current neighbour list.
 template <int Dim>
 void accelerate(Simulation<Dim>& s, Rates<Dim>& f) {
-    update_volumes(f, static_cast<int>(s.particles.size()));
+    s.fill_images(s.particles.velocity, Parity::velocity);
+    update_volumes(s, f);
     if (f.renormalisation != nullptr) {
         update_renormalisation(s, f);
         s.count_sweeps(1);
@@ -217,6 +225,7 @@ void accelerate(Simulation<Dim>& s, Rates<Dim>& f) {
 ///   renormalised  rho_i sum_j V_j (u_i - u_j).L_i gradW_ij  Oger 2007
 template <int Dim>
 void continuity(Simulation<Dim>& s, Rates<Dim>& f) {
+    s.fill_images(s.particles.velocity, Parity::velocity);
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const UniformVolume mass{s.particle_mass};
     const MassTimesSpecificVolume volume{s.particle_mass, f.specific_volume[0]};
@@ -269,7 +278,7 @@ double elastic_energy(const Simulation<Dim>& s, const Rates<Dim>& f) {
 /// neighbour list. Forms the scratch fields anew.
 template <int Dim>
 double internal_torque(const Simulation<Dim>& s, Rates<Dim>& f) {
-    update_volumes(f, static_cast<int>(s.particles.size()));
+    update_volumes(s, f);
     if (f.renormalisation != nullptr) {
         update_renormalisation(s, f);
     }

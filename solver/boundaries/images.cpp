@@ -1,0 +1,114 @@
+#include "sphvv/solver/boundaries/images.hpp"
+
+#include "sphvv/solver/operators/symmetric_matrix.hpp"
+
+namespace sphvv::solver {
+namespace {
+
+template <int Dim>
+Vector<Dim> vector_at(const Field& field, std::size_t i) {
+    Vector<Dim> v;
+    for (int d = 0; d < Dim; ++d) {
+        v[d] = field.components[d][i];
+    }
+    return v;
+}
+
+template <int Dim>
+void set_vector(Field& field, std::size_t i, const Vector<Dim>& v) {
+    for (int d = 0; d < Dim; ++d) {
+        field.components[d][i] = v[d];
+    }
+}
+
+template <int Dim>
+Vector<Dim> reflected(const Vector<Dim>& v, const Vector<Dim>& normal) {
+    return v - 2 * v.dot(normal) * normal;
+}
+
+} // namespace
+
+template <int Dim>
+void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, double t,
+                         Particles<Dim>& particles) {
+    source_.clear();
+    particle_.clear();
+    reflection_.clear();
+    first_ = particles.size();
+    std::vector<Vector<Dim>> positions;
+    for (const Wall<Dim>& wall : walls) {
+        // Images in the walls before are reflected, too: that fills the corners.
+        const std::size_t earlier = first_ + size();
+        for (std::size_t i = 0; i < earlier; ++i) {
+            const Vector<Dim> x = i < first_ ? vector_at<Dim>(particles.position, i) : positions[i - first_];
+            const double d = wall.distance(x);
+            if (!(d < radius) || d < -radius) {
+                continue;
+            }
+            const Vector<Dim> n = wall.normal(x);
+            const Vector<Dim> foot = x - d * n;
+            positions.push_back(foot - d * n);
+            source_.push_back(static_cast<int>(i));
+            particle_.push_back(i < first_ ? static_cast<int>(i) : particle_[i - first_]);
+            reflection_.push_back({n, wall.velocity(foot, t), wall.slip});
+        }
+    }
+    particles.set_images(size());
+    for (std::size_t k = 0; k < size(); ++k) {
+        set_vector<Dim>(particles.position, first_ + k, positions[k]);
+    }
+}
+
+template <int Dim>
+void Images<Dim>::fill(Field& field, Parity parity) const {
+    for (std::size_t k = 0; k < size(); ++k) {
+        const std::size_t from = source_[k];
+        const std::size_t to = first_ + k;
+        const auto& [normal, wall_velocity, slip] = reflection_[k];
+        switch (parity) {
+        case Parity::even:
+            for (auto& component : field.components) {
+                component[to] = component[from];
+            }
+            break;
+        case Parity::displacement:
+            set_vector<Dim>(field, to, reflected<Dim>(vector_at<Dim>(field, from), normal));
+            break;
+        case Parity::velocity: {
+            const Vector<Dim> relative = vector_at<Dim>(field, from) - wall_velocity;
+            set_vector<Dim>(field, to,
+                            wall_velocity + (slip == Slip::no_slip ? Vector<Dim>(-relative)
+                                                                   : reflected<Dim>(relative, normal)));
+            break;
+        }
+        case Parity::tensor: {
+            Matrix<Dim> T;
+            for (int a = 0; a < Dim; ++a) {
+                for (int b = 0; b < Dim; ++b) {
+                    T(a, b) = field.components[symmetric_component<Dim>(a, b)][from];
+                }
+            }
+            const Matrix<Dim> R = Matrix<Dim>::Identity() - 2 * normal * normal.transpose();
+            const Matrix<Dim> image = R * T * R;
+            for (int a = 0; a < Dim; ++a) {
+                for (int b = a; b < Dim; ++b) {
+                    field.components[symmetric_component<Dim>(a, b)][to] = image(a, b);
+                }
+            }
+            break;
+        }
+        }
+    }
+}
+
+template <int Dim>
+void Images<Dim>::fill(double* values, int first) const {
+    for (std::size_t k = 0; k < size(); ++k) {
+        values[first + k] = values[particle_[k]];
+    }
+}
+
+template class Images<2>;
+template class Images<3>;
+
+} // namespace sphvv::solver

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "sphvv/solver/operators/row.hpp"
+
+#include <functional>
+#include <string>
+
+namespace sphvv::solver {
+
+/// What a wall does to the velocity along it.
+enum class Slip {
+    no_slip,  ///< the fluid at the wall moves with it
+    free_slip ///< only the velocity normal to the wall is the wall's: a smooth wall, or a plane of symmetry
+};
+
+/// A wall as the zero of a signed distance. A shape is a function that returns one of these, in a file of
+/// solver/boundaries/shapes/.
+template <int Dim>
+struct Wall {
+    std::string name;
+    Slip slip = Slip::no_slip;
+    /// m, positive in the fluid, with |grad distance| = 1 within a kernel support of the wall.
+    std::function<double(const Vector<Dim>& x)> distance;
+    /// grad distance: unit vector, into the fluid.
+    std::function<Vector<Dim>(const Vector<Dim>& x)> normal;
+    /// Of the wall's material at its point x, m/s; along the wall, so that the shape stays where it is.
+    std::function<Vector<Dim>(const Vector<Dim>& x, double t)> velocity;
+};
+
+/// A wall that is at rest.
+template <int Dim>
+Vector<Dim> at_rest(const Vector<Dim>& /*x*/, double /*t*/) {
+    return Vector<Dim>::Zero();
+}
+
+} // namespace sphvv::solver

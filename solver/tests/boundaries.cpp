@@ -1,0 +1,354 @@
+// Walls: images of particles, their values, and schemes in scenes with walls.
+//   solver_boundaries --gtest_filter='*isph_dfs*'
+#include "sphvv/solver/boundaries/shapes/circle.hpp"
+#include "sphvv/solver/boundaries/shapes/plane.hpp"
+#include "sphvv/solver/operators/symmetric_matrix.hpp"
+#include "sphvv/solver/tests/scenes.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace sphvv::solver {
+namespace {
+
+using namespace scenes;
+using shapes::circle;
+using shapes::plane;
+
+template <int Dim>
+Vector<Dim> unit(int direction) {
+    return Vector<Dim>::Unit(direction);
+}
+
+template <int Dim>
+Vector<Dim> values_at(const Field& field, std::size_t i) {
+    Vector<Dim> v;
+    for (int d = 0; d < Dim; ++d) {
+        v[d] = field.components[d][i];
+    }
+    return v;
+}
+
+template <int Dim>
+Particles<Dim> particles_at(const std::vector<Vector<Dim>>& points) {
+    Particles<Dim> particles(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        for (int d = 0; d < Dim; ++d) {
+            particles.position[d][i] = points[i][d];
+        }
+    }
+    return particles;
+}
+
+/// The faces of the box normal to the given directions.
+template <int Dim>
+std::vector<Wall<Dim>> faces(const Box<Dim>& box, const std::vector<int>& directions, Slip slip) {
+    std::vector<Wall<Dim>> walls;
+    for (const int d : directions) {
+        walls.push_back(plane<Dim>("low", box.low[d] * unit<Dim>(d), unit<Dim>(d), slip));
+        walls.push_back(plane<Dim>("high", box.high[d] * unit<Dim>(d), -unit<Dim>(d), slip));
+    }
+    return walls;
+}
+
+// Where images are.
+
+TEST(Images, AreReflectedInTheWallWithinTheSupport) {
+    const std::vector<Wall<2>> walls{plane<2>("bed", {0, 0.5}, {0, 1}, Slip::no_slip)};
+    auto particles = particles_at<2>({{0.1, 0.6}, {0.2, 0.81}, {0.3, 0.79}});
+    Images<2> images;
+    images.mirror(walls, 0.3, 0, particles);
+    ASSERT_EQ(images.size(), 2U);
+    ASSERT_EQ(particles.with_images(), 5U);
+    EXPECT_EQ(particles.size(), 3U);
+    EXPECT_NEAR((values_at<2>(particles.position, 3) - Vector<2>(0.1, 0.4)).norm(), 0, 1e-15);
+    EXPECT_NEAR((values_at<2>(particles.position, 4) - Vector<2>(0.3, 0.21)).norm(), 0, 1e-15);
+    EXPECT_EQ(images.particle(0), 0);
+    EXPECT_EQ(images.particle(1), 2);
+    particles.permute(std::vector<int>{2, 0, 1});
+    EXPECT_EQ(particles.with_images(), 3U) << "images of another order";
+}
+
+TEST(Images, OfImagesFillCorners) {
+    const auto walls = faces<3>(cube<3>(1, false), {0, 1, 2}, Slip::free_slip);
+    auto particles = particles_at<3>({{0.1, 0.2, 0.3}});
+    Images<3> images;
+    images.mirror(walls, 0.4, 0, particles);
+    ASSERT_EQ(images.size(), 7U);
+    Field& velocity = particles.velocity;
+    for (int d = 0; d < 3; ++d) {
+        velocity[d][0] = d + 1;
+    }
+    images.fill(velocity, Parity::velocity);
+    for (std::size_t k = 1; k <= 7; ++k) {
+        EXPECT_EQ(images.particle(k - 1), 0);
+        for (int d = 0; d < 3; ++d) {
+            const bool reflected = particles.position[d][k] < 0;
+            EXPECT_NEAR(particles.position[d][k], (reflected ? -0.1 : 0.1) * (d + 1), 1e-15);
+            EXPECT_EQ(velocity[d][k], (reflected ? -1 : 1) * (d + 1));
+        }
+    }
+}
+
+TEST(Images, InACircleLieOnTheSameRay) {
+    for (const auto side : {shapes::Side::inside, shapes::Side::outside}) {
+        const Vector<2> centre(0.3, -0.2);
+        const Wall<2> wall = circle("cylinder", centre, 1, side, Slip::no_slip, 2.5);
+        const double r = side == shapes::Side::inside ? 0.9 : 1.1;
+        const Vector<2> ray(std::cos(0.7), std::sin(0.7));
+        auto particles = particles_at<2>({centre + r * ray, centre + (2 * r - 1) * ray});
+        EXPECT_NEAR(wall.distance(centre + r * ray), 0.1, 1e-15);
+        Images<2> images;
+        images.mirror({&wall, 1}, 0.15, 0, particles);
+        ASSERT_EQ(images.size(), 1U);
+        EXPECT_NEAR((values_at<2>(particles.position, 2) - centre - (2 - r) * ray).norm(), 0, 1e-15);
+        // Solid rotation with the wall: the velocity of the image makes it that of the wall at the wall.
+        const Vector<2> across(-ray[1], ray[0]);
+        for (int d = 0; d < 2; ++d) {
+            particles.velocity[d][0] = 2.5 * r * across[d];
+        }
+        images.fill(particles.velocity, Parity::velocity);
+        EXPECT_NEAR((values_at<2>(particles.velocity, 2) - 2.5 * (2 - r) * across).norm(), 0, 1e-14);
+    }
+}
+
+// What images carry.
+
+class Values : public testing::Test {
+protected:
+    void SetUp() override {
+        normal = Vector<3>(0.2, -0.5, 0.7).normalized();
+        speed = Vector<3>(0.3, 0.4, -0.1);
+        speed -= speed.dot(normal) * normal;
+    }
+    /// The value that the image of a particle with this value has.
+    template <int Components>
+    Vector<Components> image_of(const Vector<Components>& value, Parity parity, Slip slip) {
+        const std::vector<Wall<3>> walls{plane<3>("wall", Vector<3>::Zero(), normal, slip, Vector<3>(speed))};
+        auto particles = particles_at<3>({0.1 * normal});
+        Images<3> images;
+        images.mirror(walls, 0.2, 0, particles);
+        Field& field = particles.field("value", Components, Lifetime::scratch, "test");
+        for (int c = 0; c < Components; ++c) {
+            field[c][0] = value[c];
+        }
+        images.fill(field, parity);
+        return values_at<Components>(field, 1);
+    }
+    Vector<3> normal;
+    Vector<3> speed;
+};
+
+TEST_F(Values, EvenQuantitiesAreCopied) {
+    EXPECT_EQ(image_of<1>(Vector<1>(3.5), Parity::even, Slip::no_slip)[0], 3.5);
+}
+
+TEST_F(Values, TheMeanOfVelocitiesAcrossAWallIsTheWalls) {
+    const Vector<3> u(1, 2, 3);
+    const Vector<3> sticking = (u + image_of<3>(u, Parity::velocity, Slip::no_slip)) / 2;
+    EXPECT_NEAR((sticking - speed).norm(), 0, 1e-15);
+    const Vector<3> sliding = (u + image_of<3>(u, Parity::velocity, Slip::free_slip)) / 2;
+    EXPECT_NEAR(sliding.dot(normal), speed.dot(normal), 1e-15) << "fluid goes through the wall";
+    EXPECT_NEAR((sliding - (u - u.dot(normal) * normal)).norm(), 0, 1e-15) << "the wall drags";
+}
+
+TEST_F(Values, DisplacementsAndTensorsAreReflected) {
+    const Vector<3> d(1, 2, 3);
+    const Vector<3> image = image_of<3>(d, Parity::displacement, Slip::no_slip);
+    EXPECT_NEAR(image.dot(normal), -d.dot(normal), 1e-15);
+    EXPECT_NEAR((image + image.dot(-normal) * normal - d + d.dot(normal) * normal).norm(), 0, 1e-15);
+    // T = d d^T has the image of the vector d as its own.
+    Vector<6> stored;
+    Vector<6> expected;
+    for (int a = 0; a < 3; ++a) {
+        for (int b = a; b < 3; ++b) {
+            stored[symmetric_component<3>(a, b)] = d[a] * d[b];
+            expected[symmetric_component<3>(a, b)] = image[a] * image[b];
+        }
+    }
+    EXPECT_NEAR((image_of<6>(stored, Parity::tensor, Slip::no_slip) - expected).norm(), 0, 1e-14);
+}
+
+// Schemes between walls.
+
+class BetweenWalls : public testing::TestWithParam<const Scheme*> {
+protected:
+    const Scheme& scheme = *GetParam();
+
+    bool has_key(std::string_view key) const {
+        return std::ranges::any_of(scheme.keys, [&](const Key& k) { return k.name == key; });
+    }
+    /// Settings under which a scheme knows no difference between a particle and another.
+    Assignments alike() const {
+        Assignments given{{"time_step", "0.002"}};
+        if (has_key("pressure_tolerance")) {
+            given["pressure_tolerance"] = "1e-13";
+        }
+        if (has_key("shift_disorder")) {
+            given["shift_disorder"] = "0";
+        }
+        return given;
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, BetweenWalls, testing::ValuesIn(schemes::all().begin(), schemes::all().end()),
+                         [](const auto& test) { return std::string(test.param->name); });
+
+/// Taylor-Green vortices in the unit square.
+void set_vortices(Simulation<2>& scene) {
+    Field& pressure = scene.particles.field("pressure", 1, Lifetime::state, "scene");
+    for (std::size_t i = 0; i < scene.particles.size(); ++i) {
+        const auto [u, p] =
+            flow_at(std::array{scene.particles.position[0][i], scene.particles.position[1][i]});
+        scene.particles.velocity[0][i] = u[0];
+        scene.particles.velocity[1][i] = u[1];
+        pressure[0][i] = p;
+    }
+}
+
+/// Values of a field by identity.
+template <int Components>
+std::vector<Vector<Components>> by_identity(const std::vector<int>& id, const Field& field) {
+    std::vector<Vector<Components>> values(id.size());
+    for (std::size_t k = 0; k < id.size(); ++k) {
+        values[id[k]] = values_at<Components>(field, k);
+    }
+    return values;
+}
+
+// The lines x, y = 1/4, 3/4 are planes of symmetry of the vortices, and of a lattice that has none of its
+// particles on them: a quarter of the square between walls with free slip is a quarter of the whole.
+TEST_P(BetweenWalls, FreeSlipIsSymmetry) {
+    constexpr int n = 16;
+    constexpr int m = n / 2;
+    auto whole = still_scene<2>(scheme, alike(), n);
+    set_vortices(whole);
+    scheme.assemble(whole);
+
+    Box<2> box;
+    box.low.fill(0.25);
+    box.high.fill(0.75);
+    Simulation<2> quarter(box, m * m);
+    quarter.settings = whole.settings;
+    quarter.kernel = whole.kernel;
+    quarter.particle_spacing = whole.particle_spacing;
+    quarter.smoothing_length = whole.smoothing_length;
+    quarter.density = whole.density;
+    quarter.kinematic_viscosity = whole.kinematic_viscosity;
+    quarter.reference_speed = whole.reference_speed;
+    quarter.particle_mass = whole.particle_mass;
+    quarter.end_time = whole.end_time;
+    quarter.walls = faces<2>(box, {0, 1}, Slip::free_slip);
+    const auto points = lattice<2>(box, 1. / n);
+    for (int d = 0; d < 2; ++d) {
+        quarter.particles.position.components[d] = points[d];
+    }
+    set_vortices(quarter);
+    scheme.assemble(quarter);
+
+    for (int step = 0; step < 5; ++step) {
+        advance(whole);
+        advance(quarter);
+    }
+    const auto x_whole = by_identity<2>(whole.particles.id, whole.particles.position);
+    const auto u_whole = by_identity<2>(whole.particles.id, whole.particles.velocity);
+    const auto p_whole = by_identity<1>(whole.particles.id, *whole.particles.find("pressure"));
+    const auto x = by_identity<2>(quarter.particles.id, quarter.particles.position);
+    const auto u = by_identity<2>(quarter.particles.id, quarter.particles.velocity);
+    const auto p = by_identity<1>(quarter.particles.id, *quarter.particles.find("pressure"));
+    double moved = 0;
+    for (int row = 0; row < m; ++row) {
+        for (int column = 0; column < m; ++column) {
+            const int k = row * m + column;
+            const int of = (row + n / 4) * n + column + n / 4;
+            EXPECT_NEAR((x[k] - x_whole[of]).norm(), 0, 1e-10) << k;
+            EXPECT_NEAR((u[k] - u_whole[of]).norm(), 0, 1e-9) << k;
+            EXPECT_NEAR(p[k][0], p_whole[of][0], 1e-7) << k;
+            moved = std::max(moved, std::abs(x[k][0] - points[0][k]));
+        }
+    }
+    EXPECT_GT(moved, 1e-3);
+}
+
+/// A channel of height 1 between no-slip walls, the upper one moving with `speed`, with u = U(y).
+template <class Profile>
+Simulation<2> channel(const Scheme& scheme, const Assignments& given, int n, double speed,
+                      const Profile& profile) {
+    Simulation<2> scene = still_scene<2>(scheme, given, n);
+    scene.box.periodic[1] = false;
+    scene.walls = {plane<2>("bed", {0, 0}, {0, 1}, Slip::no_slip),
+                   plane<2>("lid", {0, 1}, {0, -1}, Slip::no_slip, {speed, 0})};
+    for (std::size_t i = 0; i < scene.particles.size(); ++i) {
+        scene.particles.velocity[0][i] = profile(scene.particles.position[1][i]);
+    }
+    scheme.assemble(scene);
+    return scene;
+}
+
+// Every operator of every scheme is exact for u = y on rows that slide along each other, or sums it to zero
+// by symmetry; images continue it through the walls.
+TEST_P(BetweenWalls, CouetteFlowIsSteadyOnALattice) {
+    auto scene = channel(scheme, alike(), 12, 1, [](double y) { return y; });
+    for (int step = 0; step < 5; ++step) {
+        advance(scene);
+    }
+    for (std::size_t i = 0; i < scene.particles.size(); ++i) {
+        EXPECT_NEAR(scene.particles.velocity[0][i], scene.particles.position[1][i], 2e-3) << i;
+        EXPECT_NEAR(scene.particles.velocity[1][i], 0, 2e-3) << i;
+    }
+}
+
+// Fluid at rest and a uniform body force along walls that do not hold it back: the first step gives all of
+// it.
+TEST_P(BetweenWalls, ABodyForceAcceleratesTheFluid) {
+    auto scene = channel(scheme, alike(), 12, 0, [](double /*y*/) { return 0.; });
+    for (Wall<2>& wall : scene.walls) {
+        wall.slip = Slip::free_slip;
+    }
+    scene.body_force = {0.5, 0};
+    advance(scene);
+    for (std::size_t i = 0; i < scene.particles.size(); ++i) {
+        EXPECT_NEAR(scene.particles.velocity[0][i], 0.5 * scene.time_step, 1e-6 * scene.time_step) << i;
+    }
+}
+
+// Whatever a sweep reads at images was put there since they were made: what else they hold may be anything.
+TEST_P(BetweenWalls, NoStageReadsAnImageThatWasNotFilled) {
+    const auto run = [&](bool poisoned) {
+        auto scene = channel(scheme, alike(), 12, 1, [](double y) { return y * y; });
+        for (int step = 0; step < 3; ++step) {
+            for (auto& stage : scene.stages) {
+                stage.run(scene);
+                if (poisoned) {
+                    for (Field& field : scene.particles.fields()) {
+                        for (auto& component : field.components) {
+                            const bool place = field.name == "position";
+                            std::fill(component.begin() + static_cast<std::ptrdiff_t>(
+                                                              place ? component.size() : field.particles),
+                                      component.end(), not_a_number);
+                        }
+                    }
+                }
+            }
+            scene.time += scene.time_step;
+            ++scene.step;
+        }
+        return scene;
+    };
+    const auto sound = run(false);
+    const auto poisoned = run(true);
+    EXPECT_FALSE(sound.images.empty());
+    for (const auto& field : sound.particles.fields()) {
+        const Field& other = *poisoned.particles.find(field.name);
+        for (std::size_t c = 0; c < field.components.size(); ++c) {
+            for (std::size_t i = 0; i < field.particles; ++i) {
+                ASSERT_EQ(field.components[c][i], other.components[c][i]) << field.name << ' ' << i;
+            }
+        }
+    }
+}
+
+} // namespace
+} // namespace sphvv::solver
