@@ -97,9 +97,9 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
     const int cells = grid.cell_count();
     std::vector<int> members; // particles cell by cell
     std::ranges::copy_if(grid.order(), std::back_inserter(members),
-                         [&](int i) { return i < problem.size(); });
+                         [&](int i) { return i < problem.size() && !problem.is_fixed(i); });
     std::vector<int> first(cells + 1, 0);
-    for (int i = 0; i < problem.size(); ++i) {
+    for (const int i : members) {
         ++first[grid.cell_of(i) + 1];
     }
     for (int c = 0; c < cells; ++c) {
@@ -126,7 +126,11 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
                 const double* w = problem.weights_.data() + neighbours.row_start(i);
                 sums[c] += problem.diagonal_[i];
                 for (int k = 0; k < row.count; ++k) {
-                    const int other = grid.cell_of(problem.unknown_of(row.index[k]));
+                    const int j = problem.unknown_of(row.index[k]);
+                    if (problem.is_fixed(j)) {
+                        continue;
+                    }
+                    const int other = grid.cell_of(j);
                     touch(other);
                     sums[other] -= w[k];
                 }
@@ -140,7 +144,7 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
             touched_cells.clear();
         }
     }
-    pinned_cell = grid.cell_of(members[0]);
+    pinned_cell = problem.fixed_.empty() ? grid.cell_of(members[0]) : -1;
     std::vector<Eigen::Triplet<double>> entries;
     for (int c = 0; c < cells; ++c) {
         const bool empty = first[c] == first[c + 1];
@@ -168,12 +172,14 @@ void PressurePoisson<Dim>::CoarseSpace::add_correction(const PressurePoisson& pr
     const CellGrid<Dim>& grid = problem.neighbours_->grid();
     restricted.setZero();
     for (int i = 0; i < problem.size(); ++i) {
-        restricted[grid.cell_of(i)] += residual[i];
+        restricted[grid.cell_of(i)] += residual[i]; // of a fixed pressure: 0
     }
-    restricted[pinned_cell] = 0;
+    if (pinned_cell >= 0) {
+        restricted[pinned_cell] = 0;
+    }
     solution = factor.solve(restricted);
     for (int i = 0; i < problem.size(); ++i) {
-        z[i] += solution[grid.cell_of(i)];
+        z[i] += problem.is_fixed(i) ? 0 : solution[grid.cell_of(i)];
     }
 }
 
@@ -232,6 +238,17 @@ void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours, const Ima
     weights_.resize(neighbours.entries());
     diagonal_.resize(neighbours.size());
     source_.resize(neighbours.size());
+    fixed_.clear();
+}
+
+template <int Dim>
+void PressurePoisson<Dim>::fix_at_zero(int i) {
+    fixed_.resize(size());
+    fixed_[i] = 1;
+    const auto row = neighbours_->row(i);
+    std::fill(weights(i), weights(i) + row.padded, 0.0);
+    diagonal_[i] = 1;
+    source_[i] = 0;
 }
 
 template <int Dim>
@@ -250,7 +267,7 @@ void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
         }
         y[i] = diagonal_[i] * x[i] - sum(total);
     });
-    if (!options_.symmetric) {
+    if (!options_.symmetric && fixed_.empty()) {
         remove_mean(y, size());
     }
 }
@@ -260,7 +277,15 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     // Eigen's own vectors are aligned alike in every run; how it sums over foreign memory depends on the
     // address.
     Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(pressure, size());
-    remove_mean(source_.data(), size());
+    if (fixed_.empty()) {
+        remove_mean(source_.data(), size());
+    }
+    // A fixed pressure that starts at zero stays there: its equation has no residual, and no other changes
+    // it. So the columns of fixed pressures are never used, and what is left of a symmetric matrix is
+    // symmetric.
+    for (int i = 0; i < size() && !fixed_.empty(); ++i) {
+        p[i] = is_fixed(i) ? 0 : p[i];
+    }
     LinearSolve result{0, 0, true, 0};
     if (source_.norm() <= round_off_ * std::sqrt(size())) {
         std::fill(pressure, pressure + size(), 0.0);
@@ -288,7 +313,9 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     } else {
         run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);
     }
-    remove_mean(p.data(), size());
+    if (fixed_.empty()) {
+        remove_mean(p.data(), size());
+    }
     std::copy(p.begin(), p.end(), pressure);
     return result;
 }

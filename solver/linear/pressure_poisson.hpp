@@ -25,7 +25,7 @@ struct LinearSolve {
 /// An image of j beyond a wall has the pressure of j: grad p . n = 0 at the wall, in which the acceleration
 /// of the wall-normal velocity that the source holds includes that by gravity.
 ///
-/// The matrix is never copied: products run over the list. Constants are in its null space (no wall, no free
+/// The matrix is never copied: products run over the list. Constants are in its null space (no free
 /// surface), so the mean of the right-hand side is projected out, and so is the mean of each product where
 /// the matrix is not symmetric and its range is another hyperplane; the solution is returned with zero mean.
 /// Conjugate gradients for symmetric weights, Bi-CGSTAB otherwise, both Eigen's, started from the given
@@ -63,6 +63,10 @@ public:
     /// round-off.
     void set_round_off(double root_mean_square) { round_off_ = root_mean_square; }
 
+    /// p_i = 0 takes the place of equation i, which has been written. With one such particle the solution is
+    /// unique, and no mean is projected out of anything.
+    void fix_at_zero(int i);
+
     /// Solves for `pressure`, which holds the first guess.
     LinearSolve solve(double* pressure);
 
@@ -77,6 +81,7 @@ private:
     struct CoarseSpace;
 
     Options options_;
+    bool is_fixed(int i) const { return !fixed_.empty() && fixed_[i]; }
     /// The particle whose pressure a neighbour has.
     int unknown_of(int neighbour) const {
         return neighbour < size() ? neighbour : images_->particle(neighbour - size());
@@ -86,6 +91,7 @@ private:
     const Images<Dim>* images_ = nullptr;
     mutable std::vector<double> with_images_; // x of a product, and its values at the images
     std::vector<double> weights_;
+    std::vector<char> fixed_; // empty where none is
     Eigen::VectorXd diagonal_;
     Eigen::VectorXd source_;
     std::unique_ptr<CoarseSpace> coarse_;

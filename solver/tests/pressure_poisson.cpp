@@ -320,6 +320,56 @@ TYPED_TEST(PressurePoissonTest, CanBeUsedAgainForOtherParticles) {
     }
 }
 
+// A free surface: the pressure of some particles is given, and no constant is left free.
+TYPED_TEST(PressurePoissonTest, KeepsFixedPressuresAtZero) {
+    constexpr int Dim = TypeParam::value;
+    this->for_each_case(
+        Dim == 2 ? 12 : 8, 1e-12, [&](const Sample<Dim>& sample, PressurePoisson<Dim>& problem, Case) {
+            Eigen::MatrixXd A = dense(problem, sample.list);
+            Eigen::VectorXd b(sample.count());
+            for (int i = 0; i < sample.count(); ++i) {
+                b[i] = this->random.uniform(0, 1); // with a mean
+            }
+            set_source(problem, b);
+            for (int i = 0; i < sample.count(); ++i) {
+                if (sample.points[0][i] > 0.8) {
+                    problem.fix_at_zero(i);
+                    A.row(i).setZero();
+                    A(i, i) = 1;
+                    b[i] = 0;
+                }
+            }
+            const std::vector<double> guess = this->random.values(sample.count(), -1, 1);
+            std::vector<double> p = guess;
+            EXPECT_TRUE(problem.solve(p.data()).converged);
+            const Eigen::VectorXd expected = A.partialPivLu().solve(b);
+            const Eigen::VectorXd found = Eigen::Map<const Eigen::VectorXd>(p.data(), b.size());
+            EXPECT_LT((found - expected).norm(), 1e-8 * expected.norm());
+            for (int i = 0; i < sample.count(); ++i) {
+                EXPECT_TRUE(sample.points[0][i] <= 0.8 || p[i] == 0) << i;
+            }
+        });
+}
+
+TEST(PressurePoissonIterations, DoNotGrowWithTheNumberOfParticlesBelowASurface) {
+    const auto iterations_below = [](int n) {
+        const Sample<2> sample(n, 0.1, 28, true);
+        PressurePoisson<2> problem(options<2>({true, true}, 1e-8));
+        write_weights(problem, sample.list, sample.volume(), true);
+        set_source(problem, Eigen::VectorXd::Ones(sample.count()));
+        for (int i = 0; i < sample.count(); ++i) {
+            if (sample.points[1][i] > 1 - sample.dx) {
+                problem.fix_at_zero(i);
+            }
+        }
+        std::vector<double> p(sample.count());
+        const LinearSolve solve = problem.solve(p.data());
+        EXPECT_TRUE(solve.converged);
+        return solve.iterations;
+    };
+    EXPECT_LE(iterations_below(80), 1.3 * iterations_below(20));
+}
+
 // A block of fluid in the upper corner of an otherwise empty box: the first cells hold no particle.
 TYPED_TEST(PressurePoissonTest, SolvesWhereCellsAreEmpty) {
     constexpr int Dim = TypeParam::value;
