@@ -7,8 +7,8 @@
 namespace sphvv::solver {
 
 template <int Dim>
-Particles<Dim>::Particles(std::size_t count)
-    : id(count), position(field("position", Dim, Lifetime::state, "scene")),
+Particles<Dim>::Particles(std::size_t count, std::size_t wall)
+    : id(count), wall_(wall), position(field("position", Dim, Lifetime::state, "scene")),
       velocity(field("velocity", Dim, Lifetime::state, "scene")) {
     std::iota(id.begin(), id.end(), 0);
 }

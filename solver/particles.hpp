@@ -64,7 +64,8 @@ double largest_norm(const Field& field) {
 template <int Dim>
 class Particles {
 public:
-    explicit Particles(std::size_t count);
+    /// Of `count` particles, the last `wall` are part of walls.
+    explicit Particles(std::size_t count, std::size_t wall = 0);
     // Moving keeps every field where it is, so references to fields survive; a copy would refer to the
     // original's.
     Particles(Particles&&) noexcept = default;
@@ -74,6 +75,8 @@ public:
     ~Particles() = default;
 
     std::size_t size() const { return id.size(); }
+    /// Particles of the fluid; those behind them are part of walls.
+    std::size_t fluid_size() const { return size() - wall_; }
     /// Particles and their images beyond walls: the length of every component of a field.
     std::size_t with_images() const { return size() + images_; }
     /// Makes room for that many images, behind the particles, in every field.
@@ -91,7 +94,8 @@ public:
     /// Bytes of all fields and the identity, per particle.
     std::size_t bytes_per_particle() const;
 
-    /// Reorders identity and state fields: particle k becomes what was particle order[k]. Images are dropped.
+    /// Reorders identity and state fields: particle k becomes what was particle order[k]; the order must keep
+    /// wall particles behind those of the fluid. Images are dropped.
     void permute(std::span<const int> order);
 
     std::vector<int> id; ///< rank at the start of the run
@@ -99,6 +103,7 @@ public:
 private:
     std::deque<Field> fields_; // a deque, so that references that stages hold stay valid
     std::vector<double> permuted_;
+    std::size_t wall_;
     std::size_t images_ = 0;
 
 public:

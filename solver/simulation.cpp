@@ -88,6 +88,19 @@ void check_survival(const Simulation<Dim>& simulation) {
     }
 }
 
+/// Back to where they belong, as they take part in every step like the others.
+template <int Dim>
+void hold_wall_particles(Simulation<Dim>& simulation) {
+    Particles<Dim>& particles = simulation.particles;
+    const std::size_t fluid = particles.fluid_size();
+    for (std::size_t i = fluid; i < particles.size(); ++i) {
+        for (int d = 0; d < Dim; ++d) {
+            particles.position[d][i] = simulation.wall_particles[particles.id[i] - fluid].position[d];
+        }
+    }
+    simulation.fill_walls(particles.velocity, Parity::velocity);
+}
+
 } // namespace
 
 template <int Dim>
@@ -101,6 +114,7 @@ void advance(Simulation<Dim>& simulation) {
         stage.pair_evaluations += simulation.work.pair_evaluations - pairs;
         stage.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     }
+    hold_wall_particles(simulation);
     simulation.time += simulation.time_step;
     if (simulation.end_time - simulation.time < 1e-9 * simulation.time_step) {
         simulation.time = simulation.end_time;
@@ -146,6 +160,22 @@ void wrap_positions(Simulation<Dim>& simulation) {
     }
 }
 
+template <int Dim>
+void Simulation<Dim>::fill_walls(Field& field, Parity parity) const {
+    const std::size_t fluid = particles.fluid_size();
+    for (std::size_t i = fluid; i < particles.size() && parity != Parity::even && parity != Parity::tensor;
+         ++i) {
+        const WallParticle<Dim>& particle = wall_particles[particles.id[i] - fluid];
+        const Vector<Dim> value = parity == Parity::velocity
+                                      ? walls[particle.wall].velocity(particle.position, time)
+                                      : Vector<Dim>(Vector<Dim>::Zero());
+        for (int d = 0; d < Dim; ++d) {
+            field[d][i] = value[d];
+        }
+    }
+    images.fill(field, parity);
+}
+
 namespace {
 
 /// The box, and where it has walls as much more of it as images need.
@@ -165,8 +195,11 @@ template <int Dim>
 void make_images_and_list(Simulation<Dim>& simulation, double skin) {
     Particles<Dim>& particles = simulation.particles;
     const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
-    if (!simulation.walls.empty()) {
+    if (!simulation.walls.empty() && simulation.wall_method == WallMethod::mirror) {
         simulation.images.mirror(simulation.walls, radius, simulation.time, particles);
+    } else if (!simulation.walls.empty()) {
+        simulation.images.stack(simulation.walls, simulation.wall_particles, simulation.particle_spacing,
+                                radius, simulation.time, particles);
     }
     simulation.neighbours.build(box_with_images(simulation, radius), *simulation.kernel,
                                 simulation.smoothing_length, skin, constant_arrays<Dim>(particles.position),
@@ -178,18 +211,27 @@ void make_images_and_list(Simulation<Dim>& simulation, double skin) {
 
 template <int Dim>
 void find_neighbours(Simulation<Dim>& simulation, double skin) {
+    hold_wall_particles(simulation);
     wrap_positions(simulation);
     Particles<Dim>& particles = simulation.particles;
     const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
     CellGrid<Dim> grid;
     grid.bin(box_with_images(simulation, radius), radius, constant_arrays<Dim>(particles.position),
              static_cast<int>(particles.size()));
-    particles.permute(grid.order());
+    if (particles.fluid_size() == particles.size()) {
+        particles.permute(grid.order());
+    } else {
+        std::vector<int> order(grid.order().begin(), grid.order().end());
+        std::ranges::stable_partition(order,
+                                      [&](int i) { return i < static_cast<int>(particles.fluid_size()); });
+        particles.permute(order);
+    }
     make_images_and_list(simulation, skin);
 }
 
 template <int Dim>
 void renew_neighbours(Simulation<Dim>& simulation) {
+    hold_wall_particles(simulation);
     wrap_positions(simulation);
     make_images_and_list(simulation, 0);
 }
@@ -216,7 +258,7 @@ template <int Dim>
 double kinetic_energy(const Simulation<Dim>& simulation) {
     const Field& u = simulation.particles.velocity;
     return 0.5 * simulation.particle_mass *
-           deterministic_sum(static_cast<int>(simulation.particles.size()), [&](int i) {
+           deterministic_sum(static_cast<int>(simulation.particles.fluid_size()), [&](int i) {
                double squared = 0;
                for (int d = 0; d < Dim; ++d) {
                    squared += u[d][i] * u[d][i];
@@ -231,13 +273,14 @@ std::array<double, Dim> momentum(const Simulation<Dim>& simulation) {
     for (int d = 0; d < Dim; ++d) {
         const double* u = simulation.particles.velocity[d];
         result[d] =
-            simulation.particle_mass *
-            deterministic_sum(static_cast<int>(simulation.particles.size()), [&](int i) { return u[i]; });
+            simulation.particle_mass * deterministic_sum(static_cast<int>(simulation.particles.fluid_size()),
+                                                         [&](int i) { return u[i]; });
     }
     return result;
 }
 
 #define SPHVV_INSTANTIATE(Dim)                                                                               \
+    template void Simulation<Dim>::fill_walls(Field&, Parity) const;                                         \
     template void advance(Simulation<Dim>&);                                                                 \
     template double even_step(const Simulation<Dim>&, double);                                               \
     template void wrap_positions(Simulation<Dim>&);                                                          \

@@ -51,12 +51,16 @@ struct SurvivalBounds {
 /// A scene in motion: particles, their neighbours, the stages that advance them, and what has been counted.
 template <int Dim>
 struct Simulation {
-    Simulation(Box<Dim> domain, std::size_t particle_count) : box(domain), particles(particle_count) {}
+    Simulation(Box<Dim> domain, std::size_t particle_count, std::size_t wall_count = 0)
+        : box(domain), particles(particle_count, wall_count) {}
 
     Box<Dim> box;
     Particles<Dim> particles;
     NeighbourList<Dim> neighbours;
     std::vector<Wall<Dim>> walls;
+    /// What the wall particles are, in the order of their identities.
+    std::vector<WallParticle<Dim>> wall_particles;
+    WallMethod wall_method = WallMethod::mirror;
     Images<Dim> images; ///< of particles near walls, made with the neighbour list
     Settings settings;  ///< of the scheme
     const Kernel* kernel = nullptr;
@@ -90,8 +94,9 @@ struct Simulation {
     void add_stage(std::string name, std::function<void(Simulation&)> run) {
         stages.push_back({std::move(name), std::move(run)});
     }
-    /// Values of a field at the images of particles, which every sweep over it reads.
-    void fill_images(Field& field, Parity parity) const { images.fill(field, parity); }
+    /// Values of a field at wall particles that do not evolve there, and at images: to be called before every
+    /// sweep that reads the field at neighbours.
+    void fill_walls(Field& field, Parity parity) const;
     /// Books `sweeps` visits of every pair in the neighbour list.
     void count_sweeps(int sweeps) { work.pair_evaluations += sweeps * neighbours.pairs(); }
 };
@@ -123,11 +128,11 @@ void renew_neighbours(Simulation<Dim>& simulation);
 template <int Dim>
 double maximum_speed(const Simulation<Dim>& simulation);
 
-/// Sum of m |u|^2 / 2 in a fixed order, J (per metre of depth in 2-D).
+/// Sum of m |u|^2 / 2 over the fluid in a fixed order, J (per metre of depth in 2-D).
 template <int Dim>
 double kinetic_energy(const Simulation<Dim>& simulation);
 
-/// Sum of m u in a fixed order, kg m/s (per metre of depth in 2-D).
+/// Sum of m u over the fluid in a fixed order, kg m/s (per metre of depth in 2-D).
 template <int Dim>
 std::array<double, Dim> momentum(const Simulation<Dim>& simulation);
 

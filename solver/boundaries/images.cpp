@@ -2,6 +2,8 @@
 
 #include "sphvv/solver/operators/symmetric_matrix.hpp"
 
+#include <cmath>
+
 namespace sphvv::solver {
 namespace {
 
@@ -29,30 +31,23 @@ Vector<Dim> reflected(const Vector<Dim>& v, const Vector<Dim>& normal) {
 } // namespace
 
 template <int Dim>
-void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, double t,
-                         Particles<Dim>& particles) {
+void Images<Dim>::clear(const Particles<Dim>& particles) {
     source_.clear();
     particle_.clear();
     reflection_.clear();
     first_ = particles.size();
-    std::vector<Vector<Dim>> positions;
-    for (const Wall<Dim>& wall : walls) {
-        // Images in the walls before are reflected, too: that fills the corners.
-        const std::size_t earlier = first_ + size();
-        for (std::size_t i = 0; i < earlier; ++i) {
-            const Vector<Dim> x = i < first_ ? vector_at<Dim>(particles.position, i) : positions[i - first_];
-            const double d = wall.distance(x);
-            if (!(d < radius) || d < -radius) {
-                continue;
-            }
-            const Vector<Dim> n = wall.normal(x);
-            const Vector<Dim> foot = x - d * n;
-            positions.push_back(foot - d * n);
-            source_.push_back(static_cast<int>(i));
-            particle_.push_back(i < first_ ? static_cast<int>(i) : particle_[i - first_]);
-            reflection_.push_back({n, wall.velocity(foot, t), wall.slip});
-        }
-    }
+    symmetric_ = particles.fluid_size() == particles.size();
+}
+
+template <int Dim>
+void Images<Dim>::add(int source, int particle, const Reflection& reflection) {
+    source_.push_back(source);
+    particle_.push_back(particle);
+    reflection_.push_back(reflection);
+}
+
+template <int Dim>
+void Images<Dim>::place(const std::vector<Vector<Dim>>& positions, Particles<Dim>& particles) {
     particles.set_images(size());
     for (std::size_t k = 0; k < size(); ++k) {
         set_vector<Dim>(particles.position, first_ + k, positions[k]);
@@ -60,11 +55,56 @@ void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, double
 }
 
 template <int Dim>
+void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, double t,
+                         Particles<Dim>& particles) {
+    clear(particles);
+    std::vector<Vector<Dim>> positions;
+    for (const Wall<Dim>& wall : walls) {
+        const auto reflect = [&](int source, int particle, const Vector<Dim>& x) {
+            const double d = wall.distance(x);
+            if (std::abs(d) < radius) {
+                const Vector<Dim> n = wall.normal(x);
+                const Vector<Dim> foot = x - d * n;
+                positions.push_back(foot - d * n);
+                add(source, particle, {n, wall.velocity(foot, t), wall.slip});
+            }
+        };
+        // Images in the walls before are reflected, too: that fills the corners.
+        const std::size_t earlier = size();
+        for (std::size_t i = 0; i < particles.fluid_size(); ++i) {
+            reflect(static_cast<int>(i), static_cast<int>(i), vector_at<Dim>(particles.position, i));
+        }
+        for (std::size_t k = 0; k < earlier; ++k) {
+            reflect(static_cast<int>(first_ + k), particle_[k], positions[k]);
+        }
+    }
+    place(positions, particles);
+}
+
+template <int Dim>
+void Images<Dim>::stack(std::span<const Wall<Dim>> walls, std::span<const WallParticle<Dim>> of, double dx,
+                        double radius, double t, Particles<Dim>& particles) {
+    clear(particles);
+    std::vector<Vector<Dim>> positions;
+    const auto fluid = static_cast<int>(particles.fluid_size());
+    for (int i = fluid; i < static_cast<int>(first_); ++i) {
+        const WallParticle<Dim>& particle = of[particles.id[i] - fluid];
+        const Wall<Dim>& wall = walls[particle.wall];
+        const Vector<Dim> n = wall.normal(particle.position);
+        for (int layer = 1; layer * dx < radius; ++layer) {
+            positions.push_back(particle.position - layer * dx * n);
+            add(i, i, {n, wall.velocity(particle.position, t), wall.slip, true});
+        }
+    }
+    place(positions, particles);
+}
+
+template <int Dim>
 void Images<Dim>::fill(Field& field, Parity parity) const {
     for (std::size_t k = 0; k < size(); ++k) {
         const std::size_t from = source_[k];
         const std::size_t to = first_ + k;
-        const auto& [normal, wall_velocity, slip] = reflection_[k];
+        const auto& [normal, wall_velocity, slip, carried] = reflection_[k];
         switch (parity) {
         case Parity::even:
             for (auto& component : field.components) {
@@ -76,9 +116,10 @@ void Images<Dim>::fill(Field& field, Parity parity) const {
             break;
         case Parity::velocity: {
             const Vector<Dim> relative = vector_at<Dim>(field, from) - wall_velocity;
-            set_vector<Dim>(field, to,
-                            wall_velocity + (slip == Slip::no_slip ? Vector<Dim>(-relative)
-                                                                   : reflected<Dim>(relative, normal)));
+            const Vector<Dim> image = carried                 ? relative
+                                      : slip == Slip::no_slip ? Vector<Dim>(-relative)
+                                                              : reflected<Dim>(relative, normal);
+            set_vector<Dim>(field, to, wall_velocity + image);
             break;
         }
         case Parity::tensor: {

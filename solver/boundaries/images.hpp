@@ -19,23 +19,30 @@ enum class Parity {
 /// Images of particles beyond walls. They are neighbours like any other: they have positions and values in
 /// every field, behind those of the particles, but no row of their own and no equation. Corners have images
 /// of images. A scene without walls has none, and nothing is done for them.
-///
-/// Mirror method: every particle closer to a wall than the kernel's support is reflected in the wall's
-/// tangent plane at its foot point, r - 2 d n, anew whenever neighbours are searched for. Source: Xu 2009
-/// §2.1.3; Morris et al. 1997 (velocity).
 template <int Dim>
 class Images {
 public:
     std::size_t size() const { return source_.size(); }
     bool empty() const { return source_.empty(); }
 
-    /// Makes the images of all particles within `radius` (m) of each wall, at the time t (s): positions, and
-    /// room in every other field.
+    /// Makes images of the fluid particles within `radius` (m) of each wall, at the time t (s): positions,
+    /// and room in every other field. The image lies at r - 2 d n, reflected in the tangent plane at the foot
+    /// point.
     void mirror(std::span<const Wall<Dim>> walls, double radius, double t, Particles<Dim>& particles);
+
+    /// Makes images of the wall particles (`of` holds them in the order of their identities) at r - k dx n, k
+    /// = 1, 2, … while k dx < radius.
+    void stack(std::span<const Wall<Dim>> walls, std::span<const WallParticle<Dim>> of, double dx,
+               double radius, double t, Particles<Dim>& particles);
 
     /// Values of a field at the images, from those at the particles.
     void fill(Field& field, Parity parity) const;
     void fill(double* values, int first) const; ///< the same for one even array with images from `first` on
+
+    /// Whether a pair of particles sees of each other's images what it sees of the other's. Not so with wall
+    /// particles: a wall particle sees the image of a fluid particle, which sees none of the wall particle
+    /// (mirror) or several (dummy).
+    bool symmetric() const { return symmetric_; }
 
     /// The particle, itself no image, behind the image k; and what its value is of.
     int particle(std::size_t k) const { return particle_[k]; }
@@ -45,11 +52,17 @@ private:
         Vector<Dim> normal;
         Vector<Dim> wall_velocity;
         Slip slip;
+        bool carried = false; ///< the velocity is that of the source, a wall particle
     };
+
+    void clear(const Particles<Dim>& particles);
+    void add(int source, int particle, const Reflection& reflection);
+    void place(const std::vector<Vector<Dim>>& positions, Particles<Dim>& particles);
 
     std::vector<int> source_; // a particle or an earlier image
     std::vector<int> particle_;
     std::vector<Reflection> reflection_;
+    bool symmetric_ = true;
     std::size_t first_ = 0; // place of the first image in a field
 };
 

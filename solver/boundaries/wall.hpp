@@ -27,6 +27,24 @@ struct Wall {
     std::function<Vector<Dim>(const Vector<Dim>& x, double t)> velocity;
 };
 
+/// A particle that is part of a wall: it stays at its position and has the velocity of the wall there. Every
+/// other quantity of it evolves as that of a fluid particle does.
+template <int Dim>
+struct WallParticle {
+    int wall; ///< index of the wall
+    Vector<Dim> position;
+};
+
+/// What fills the support of a particle beyond a wall.
+enum class WallMethod {
+    /// Reflections of the fluid particles, anew at every search for neighbours. Wall particles, if there are
+    /// any, lie on the wall. Source: Xu 2009 §2.1.3, §3.5; Morris et al. 1997 (velocity).
+    mirror,
+    /// Layers behind each wall particle, dx apart along the normal, with its velocity and its pressure.
+    /// Source: Lee 2008 §1.3; Xu 2009 §3.5.
+    dummy
+};
+
 /// A wall that is at rest.
 template <int Dim>
 Vector<Dim> at_rest(const Vector<Dim>& /*x*/, double /*t*/) {

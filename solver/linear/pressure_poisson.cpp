@@ -267,7 +267,7 @@ void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
         }
         y[i] = diagonal_[i] * x[i] - sum(total);
     });
-    if (!options_.symmetric && fixed_.empty()) {
+    if (!symmetric() && fixed_.empty()) {
         remove_mean(y, size());
     }
 }
@@ -308,7 +308,7 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
             (neighbours_->pairs() + size()) * (1 + std::int64_t{products_per_iteration} * result.iterations);
     };
     using Conditioner = CellPreconditioner<PressurePoisson>;
-    if (options_.symmetric) {
+    if (symmetric()) {
         run(Eigen::ConjugateGradient<PairMatrix<Dim>, Eigen::Lower | Eigen::Upper, Conditioner>(), 1);
     } else {
         run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);

@@ -81,6 +81,7 @@ private:
     struct CoarseSpace;
 
     Options options_;
+    bool symmetric() const { return options_.symmetric && images_->symmetric(); }
     bool is_fixed(int i) const { return !fixed_.empty() && fixed_[i]; }
     /// The particle whose pressure a neighbour has.
     int unknown_of(int neighbour) const {

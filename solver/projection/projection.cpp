@@ -76,7 +76,7 @@ void with_volume(const Simulation<Dim>& s, const Projection<Dim>& p, const Body&
 template <int Dim>
 void fill_density_images(const Simulation<Dim>& s, const Projection<Dim>& p) {
     if (p.density != nullptr) {
-        s.fill_images(*p.density, Parity::even);
+        s.fill_walls(*p.density, Parity::even);
     }
 }
 
@@ -234,7 +234,7 @@ void drift(Simulation<Dim>& s) {
 
 template <int Dim>
 void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
-    s.fill_images(s.particles.velocity, Parity::velocity);
+    s.fill_walls(s.particles.velocity, Parity::velocity);
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const auto next = arrays<Dim>(p.velocity_next);
     const double dt_nu = dt * s.kinematic_viscosity;
@@ -275,7 +275,7 @@ double mean_density(const Simulation<Dim>& s, const Field& density) {
 
 template <int Dim>
 void write_divergence_equations(Simulation<Dim>& s, Projection<Dim>& p) {
-    s.fill_images(p.velocity_next, Parity::velocity);
+    s.fill_walls(p.velocity_next, Parity::velocity);
     fill_density_images(s, p);
     const auto u = constant_arrays<Dim>(p.velocity_next);
     // The density is in the weights where it varies.
@@ -339,7 +339,7 @@ void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pre
 template <int Dim>
 void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, Field& pressure, double scale,
                                 Field& target) {
-    s.fill_images(pressure, Parity::even);
+    s.fill_walls(pressure, Parity::even);
     fill_density_images(s, p);
     const auto changed = arrays<Dim>(target);
     const double* rho = p.density != nullptr ? (*p.density)[0] : nullptr;

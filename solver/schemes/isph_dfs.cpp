@@ -83,12 +83,12 @@ void shift(Simulation<Dim>& s, const Shift<Dim>& f) {
     const UniformVolume volume{s.particle_mass / s.density};
     // The list was made at r*: it follows the particles to r^{n+1}, or is made anew if they went too far for
     // it.
-    s.fill_images(f.displacement, Parity::displacement);
+    s.fill_walls(f.displacement, Parity::displacement);
     if (!s.neighbours.follow(constant_arrays<Dim>(f.displacement))) {
         renew_neighbours(s);
     }
-    s.fill_images(particles.velocity, Parity::velocity);
-    s.fill_images(pressure, Parity::even);
+    s.fill_walls(particles.velocity, Parity::velocity);
+    s.fill_walls(pressure, Parity::even);
     form_shift(s, volume, pressure[0], f);
     if (f.gradient != nullptr) {
         add_second_order(s, volume, f);

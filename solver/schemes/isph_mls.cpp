@@ -238,8 +238,8 @@ template <int Dim>
 void evaluate_without_pressure(Simulation<Dim>& s, Fields<Dim>& f) {
     const NeighbourList<Dim>& list = s.neighbours;
     f.poisson.reset(list, s.images);
-    s.fill_images(s.particles.velocity, Parity::velocity);
-    s.fill_images(f.strength, Parity::even);
+    s.fill_walls(s.particles.velocity, Parity::velocity);
+    s.fill_walls(f.strength, Parity::even);
     for (auto& weights : f.gradient) {
         weights.resize(list.entries());
     }
@@ -289,7 +289,7 @@ template <int Dim>
 void evaluate(Simulation<Dim>& s, Fields<Dim>& f) {
     evaluate_without_pressure(s, f);
     projection::solve_poisson(s, f.poisson, f.pressure);
-    s.fill_images(f.pressure, Parity::even);
+    s.fill_walls(f.pressure, Parity::even);
     const auto a = arrays<Dim>(f.acceleration);
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         const Vector<Dim> gradient =

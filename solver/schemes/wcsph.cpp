@@ -81,7 +81,7 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
         update_pressure(sim, *f);
     });
     s.add_stage("corrector", [f, &start, &moved](Simulation<Dim>& sim) {
-        sim.fill_images(moved, Parity::displacement);
+        sim.fill_walls(moved, Parity::displacement);
         if (!sim.neighbours.follow(constant_arrays<Dim>(moved))) {
             renew_neighbours(sim);
         }

@@ -300,6 +300,65 @@ TEST_P(BetweenWalls, CouetteFlowIsSteadyOnALattice) {
     }
 }
 
+/// The same with a row of wall particles on each wall, and fluid particles on rows dx apart between them.
+template <class Profile>
+Simulation<2> channel_with_rows(const Scheme& scheme, const Assignments& given, int n, double speed,
+                                WallMethod method, const Profile& profile) {
+    const auto still = still_scene<2>(scheme, given, n);
+    const std::size_t fluid = n * (n - 1);
+    Simulation<2> scene(still.box, fluid + 2 * n, 2 * n);
+    scene.settings = still.settings;
+    scene.kernel = still.kernel;
+    scene.particle_spacing = still.particle_spacing;
+    scene.smoothing_length = still.smoothing_length;
+    scene.density = still.density;
+    scene.kinematic_viscosity = still.kinematic_viscosity;
+    scene.reference_speed = still.reference_speed;
+    scene.particle_mass = still.particle_mass;
+    scene.end_time = still.end_time;
+    scene.box.periodic[1] = false;
+    scene.walls = {plane<2>("bed", {0, 0}, {0, 1}, Slip::no_slip),
+                   plane<2>("lid", {0, 1}, {0, -1}, Slip::no_slip, {speed, 0})};
+    scene.wall_method = method;
+    scene.particles.field("pressure", 1, Lifetime::state, "scene");
+    for (int i = 0; i < n * (n + 1); ++i) {
+        const bool bed = i >= n * (n - 1) && i < n * n;
+        const bool lid = i >= n * n;
+        const Vector<2> x((i % n + 0.5) / n, bed ? 0. : lid ? 1. : (i / n + 1.) / n);
+        if (bed || lid) {
+            scene.wall_particles.push_back({lid ? 1 : 0, x});
+        }
+        for (int d = 0; d < 2; ++d) {
+            scene.particles.position[d][i] = x[d];
+        }
+        scene.particles.velocity[0][i] = profile(x[1]);
+    }
+    scheme.assemble(scene);
+    return scene;
+}
+
+// A linear profile is continued through the wall by mirrored particles. Dummy particles carry the velocity of
+// the wall: the profile has a kink there, which drags at the rows whose support reaches beyond the wall.
+TEST_P(BetweenWalls, WallParticlesStayAndDrag) {
+    for (const WallMethod method : {WallMethod::mirror, WallMethod::dummy}) {
+        auto scene = channel_with_rows(scheme, alike(), 16, 1, method, [](double y) { return y; });
+        for (int step = 0; step < 5; ++step) {
+            advance(scene);
+        }
+        const double tolerance = method == WallMethod::mirror ? 2e-3 : 2e-2;
+        const auto x = by_identity<2>(scene.particles.id, scene.particles.position);
+        const auto u = by_identity<2>(scene.particles.id, scene.particles.velocity);
+        for (std::size_t k = 0; k < x.size(); ++k) {
+            EXPECT_NEAR(u[k][0], x[k][1], tolerance) << k;
+            EXPECT_NEAR(u[k][1], 0, tolerance) << k;
+            if (k >= scene.particles.fluid_size()) {
+                EXPECT_EQ(x[k], scene.wall_particles[k - scene.particles.fluid_size()].position);
+            }
+        }
+        EXPECT_NEAR(kinetic_energy(scene), 0.5 * 240 / 256. / 3, 0.02) << "of the fluid alone";
+    }
+}
+
 // Fluid at rest and a uniform body force along walls that do not hold it back: the first step gives all of
 // it.
 TEST_P(BetweenWalls, ABodyForceAcceleratesTheFluid) {

@@ -163,8 +163,8 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
 /// 1/rho and, where it is read, p/rho^2.
 template <int Dim>
 void update_volumes(const Simulation<Dim>& s, Rates<Dim>& f) {
-    s.fill_images(f.density, Parity::even);
-    s.fill_images(f.pressure, Parity::even);
+    s.fill_walls(f.density, Parity::even);
+    s.fill_walls(f.pressure, Parity::even);
     const int count = static_cast<int>(s.particles.with_images());
     const double* rho = f.density[0];
     double* volume = f.specific_volume[0];
@@ -200,16 +200,16 @@ void update_renormalisation(const Simulation<Dim>& s, Rates<Dim>& f) {
             eigenvalue[i] = L ? 1 / of.eigenvalues().maxCoeff() : 0;
         }
     });
-    s.fill_images(*f.renormalisation, Parity::tensor);
+    s.fill_walls(*f.renormalisation, Parity::tensor);
     if (eigenvalue != nullptr) {
-        s.fill_images(*f.lowest_eigenvalue, Parity::even);
+        s.fill_walls(*f.lowest_eigenvalue, Parity::even);
     }
 }
 
 /// acceleration(density, pressure, velocity) on the current neighbour list.
 template <int Dim>
 void accelerate(Simulation<Dim>& s, Rates<Dim>& f) {
-    s.fill_images(s.particles.velocity, Parity::velocity);
+    s.fill_walls(s.particles.velocity, Parity::velocity);
     update_volumes(s, f);
     if (f.renormalisation != nullptr) {
         update_renormalisation(s, f);
@@ -225,7 +225,7 @@ void accelerate(Simulation<Dim>& s, Rates<Dim>& f) {
 ///   renormalised  rho_i sum_j V_j (u_i - u_j).L_i gradW_ij  Oger 2007
 template <int Dim>
 void continuity(Simulation<Dim>& s, Rates<Dim>& f) {
-    s.fill_images(s.particles.velocity, Parity::velocity);
+    s.fill_walls(s.particles.velocity, Parity::velocity);
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const UniformVolume mass{s.particle_mass};
     const MassTimesSpecificVolume volume{s.particle_mass, f.specific_volume[0]};
