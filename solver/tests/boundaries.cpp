@@ -2,6 +2,8 @@
 //   solver_boundaries --gtest_filter='*isph_dfs*'
 #include "sphvv/solver/boundaries/shapes/circle.hpp"
 #include "sphvv/solver/boundaries/shapes/plane.hpp"
+#include "sphvv/solver/linear/pressure_poisson.hpp"
+#include "sphvv/solver/operators/laplacian_morris.hpp"
 #include "sphvv/solver/operators/symmetric_matrix.hpp"
 #include "sphvv/solver/tests/scenes.hpp"
 
@@ -169,6 +171,63 @@ TEST_F(Values, DisplacementsAndTensorsAreReflected) {
         }
     }
     EXPECT_NEAR((image_of<6>(stored, Parity::tensor, Slip::no_slip) - expected).norm(), 0, 1e-14);
+}
+
+// A wall method alone: the Poisson problem of Xu 2009 §3.5 (XU-WALL), P'' = 1, P(0) = 0, P'(1) = 0, P = y^2/2
+// - y, with the Morris Laplacian on rows dx apart, the last of them on the wall.
+
+/// Largest error over that of the solution, 1/2, for so many rows and ratio eta/h.
+double wall_poisson_error(WallMethod method, int rows, double eta_over_h) {
+    constexpr int columns = 12;
+    const double dx = 1. / (rows - 1);
+    Box<2> box;
+    box.high = {columns * dx, 1};
+    box.periodic = {true, false};
+    Simulation<2> scene(box, columns * rows, columns);
+    scene.kernel = &kernels::find("quintic_spline");
+    scene.particle_spacing = dx;
+    scene.smoothing_length = 1.3 * dx;
+    scene.walls = {plane<2>("wall", {0, 1}, {0, -1}, Slip::no_slip)};
+    scene.wall_method = method;
+    for (int i = 0; i < columns * rows; ++i) {
+        const Vector<2> x((i % columns + 0.5) * dx, i / columns == rows - 1 ? 1. : i / columns * dx);
+        for (int d = 0; d < 2; ++d) {
+            scene.particles.position[d][i] = x[d];
+        }
+        if (i / columns == rows - 1) {
+            scene.wall_particles.push_back({0, x});
+        }
+    }
+    find_neighbours(scene, 0);
+    PressurePoisson<2>::Options options;
+    options.tolerance = 1e-10;
+    PressurePoisson<2> problem(options);
+    problem.reset(scene.neighbours, scene.images);
+    const UniformVolume volume{dx * dx};
+    const double eta = eta_over_h * scene.smoothing_length;
+    const double* y = scene.particles.position[1];
+    for (int i = 0; i < problem.size(); ++i) {
+        problem.diagonal(i) =
+            laplacian_morris_weights<2>(scene.neighbours.row(i), volume, eta * eta, problem.weights(i));
+        problem.source(i) = -1; // the weights are those of -Laplacian
+        if (y[i] < dx / 2) {
+            problem.fix_at_zero(i);
+        }
+    }
+    std::vector<double> p(problem.size());
+    EXPECT_TRUE(problem.solve(p.data()).converged);
+    double worst = 0;
+    for (int i = 0; i < problem.size(); ++i) {
+        worst = std::max(worst, std::abs(p[i] - (y[i] * y[i] / 2 - y[i])));
+    }
+    return worst / 0.5;
+}
+
+TEST(WallPoisson, HasTheErrorsOfTheSheet) {
+    EXPECT_NEAR(wall_poisson_error(WallMethod::mirror, 41, 0), 1.7e-2, 0.05e-2);
+    EXPECT_NEAR(wall_poisson_error(WallMethod::dummy, 41, 0), 4.7e-2, 0.05e-2);
+    EXPECT_NEAR(wall_poisson_error(WallMethod::mirror, 41, 0.1), 2.3e-2, 0.05e-2);
+    EXPECT_NEAR(wall_poisson_error(WallMethod::dummy, 41, 0.1), 5.5e-2, 0.05e-2);
 }
 
 // Schemes between walls.
