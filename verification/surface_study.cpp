@@ -360,8 +360,11 @@ std::string depth_text(double depth) {
     return depth == 0 ? "–" : solver::shortest(std::round(100 * depth) / 100);
 }
 
+/// The detector, and its threshold where that is not its own.
 std::string column_of(const SurfaceRow& row) {
-    return row.default_threshold ? row.detector : row.detector + " < " + solver::shortest(row.threshold);
+    return row.default_threshold
+               ? row.detector
+               : row.detector + " < " + solver::shortest(std::round(1e3 * row.threshold) / 1e3);
 }
 
 /// Verdict of a row against what is expected of it.

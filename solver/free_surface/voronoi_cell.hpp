@@ -5,24 +5,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 #include <vector>
 
 namespace sphvv::solver {
 
-/// A convex polygon that half-planes are cut off.
+/// A convex polygon around the origin that half-planes are cut off.
 class ConvexPolygon {
 public:
+    using Point = std::array<double, 2>;
+
     /// The square of that half side about the origin.
     void start(double half_side) {
-        corners_.assign({{-half_side, -half_side},
-                         {half_side, -half_side},
-                         {half_side, half_side},
-                         {-half_side, half_side}});
+        const double a = half_side;
+        corners_.assign({{-a, -a}, {a, -a}, {a, a}, {-a, a}});
     }
 
     /// Leaves the part with a . x <= c. Returns whether something was cut off.
-    bool cut(double a0, double a1, double c) {
-        const auto beyond = [&](const Point& x) { return a0 * x[0] + a1 * x[1] - c; };
+    bool cut(const Point& a, double c) {
+        const auto beyond = [&](const Point& x) { return a[0] * x[0] + a[1] * x[1] - c; };
         if (std::none_of(corners_.begin(), corners_.end(), [&](const Point& x) { return beyond(x) > 0; })) {
             return false;
         }
@@ -44,9 +45,7 @@ public:
         return true;
     }
 
-    bool empty() const { return corners_.empty(); }
-
-    /// Largest squared distance of a corner from the origin, 0 for the empty polygon.
+    /// Largest squared distance of a corner from the origin.
     double farthest() const {
         double largest = 0;
         for (const Point& x : corners_) {
@@ -56,9 +55,107 @@ public:
     }
 
 private:
-    using Point = std::array<double, 2>;
     std::vector<Point> corners_;
     std::vector<Point> kept_;
+};
+
+/// A convex polyhedron around the origin that half-spaces are cut off, as a set of edges that know the two
+/// faces which they part. A plane that goes through a face crosses two of its edges, and the line between
+/// those points is an edge of what is left: neither corners nor faces need be put in order. Where a plane
+/// goes through a corner an edge of length zero may come out, which does no harm.
+class ConvexPolyhedron {
+public:
+    using Point = std::array<double, 3>;
+
+    /// The cube of that half side about the origin.
+    void start(double half_side) {
+        const double a = half_side;
+        edges_.clear();
+        for (int d = 0; d < 3; ++d) { // the edges along direction d; face 2 d + (0, 1) is at x_d = -a, a
+            const int e = (d + 1) % 3;
+            const int f = (d + 2) % 3;
+            for (const int at_e : {0, 1}) {
+                for (const int at_f : {0, 1}) {
+                    Edge edge;
+                    edge.p[d] = -a;
+                    edge.q[d] = a;
+                    edge.p[e] = edge.q[e] = at_e == 1 ? a : -a;
+                    edge.p[f] = edge.q[f] = at_f == 1 ? a : -a;
+                    edge.left = 2 * e + at_e;
+                    edge.right = 2 * f + at_f;
+                    edges_.push_back(edge);
+                }
+            }
+        }
+        crossings_.assign(6, {});
+    }
+
+    /// Leaves the part with a . x <= c. Returns whether something was cut off.
+    bool cut(const Point& a, double c) {
+        const auto beyond = [&](const Point& x) { return a[0] * x[0] + a[1] * x[1] + a[2] * x[2] - c; };
+        if (std::none_of(edges_.begin(), edges_.end(),
+                         [&](const Edge& edge) { return beyond(edge.p) > 0 || beyond(edge.q) > 0; })) {
+            return false;
+        }
+        const int face = static_cast<int>(crossings_.size());
+        crossings_.push_back({});
+        kept_.clear();
+        for (Edge edge : edges_) {
+            const double at_p = beyond(edge.p);
+            const double at_q = beyond(edge.q);
+            if (at_p > 0 && at_q > 0) {
+                continue;
+            }
+            const bool crossed = at_p > 0 || at_q > 0;
+            if (crossed) {
+                const double share = at_p / (at_p - at_q);
+                Point at;
+                for (int d = 0; d < 3; ++d) {
+                    at[d] = edge.p[d] + share * (edge.q[d] - edge.p[d]);
+                }
+                (at_p > 0 ? edge.p : edge.q) = at;
+                cross(edge.left, at, face);
+                cross(edge.right, at, face);
+            }
+            kept_.push_back(edge);
+        }
+        edges_.swap(kept_);
+        return true;
+    }
+
+    /// Largest squared distance of a corner from the origin.
+    double farthest() const {
+        const auto squared = [](const Point& x) { return x[0] * x[0] + x[1] * x[1] + x[2] * x[2]; };
+        double largest = 0;
+        for (const Edge& edge : edges_) {
+            largest = std::max({largest, squared(edge.p), squared(edge.q)});
+        }
+        return largest;
+    }
+
+private:
+    struct Edge {
+        Point p, q;
+        int left, right; ///< faces
+    };
+    /// Where the plane of the last cut first met a face.
+    struct Crossing {
+        int by = -1;
+        Point at{};
+    };
+
+    void cross(int old_face, const Point& at, int new_face) {
+        Crossing& first = crossings_[old_face];
+        if (first.by == new_face) {
+            kept_.push_back({first.at, at, old_face, new_face});
+        } else {
+            first = {new_face, at};
+        }
+    }
+
+    std::vector<Edge> edges_;
+    std::vector<Edge> kept_;
+    std::vector<Crossing> crossings_; // by face
 };
 
 /// Voronoi cells, one after the other; owns the scratch space.
@@ -69,24 +166,24 @@ public:
     /// to any neighbour, or `cap` if that is less. Reads the neighbours nearer than 2 cap, the only ones
     /// whose half-way plane comes nearer than cap. A neighbour at distance zero shares the cell.
     ///
-    /// In the plane the cell is cut out of a square by the neighbours' half-way lines. In space its faces are
-    /// taken one by one: the half-way plane of neighbour j, cut by those of the others. The farthest point is
-    /// a corner, and a corner belongs to a face. (A cell that goes beyond the cap has boundary points on both
-    /// sides of it, the nearest half-way point being one, so that some face crosses it.) Nearest neighbours
-    /// come first: those farther than twice the farthest corner left cut nothing.
+    /// The cell is cut out of a square (cube) by the half-way planes, the nearest first: a neighbour farther
+    /// than twice the farthest corner left cuts nothing, nor do those after it.
     double reach(const Row<Dim>& row, double cap) {
         gather_sites(row, 4 * cap * cap);
-        const double squared_cap = cap * cap;
-        double farthest = sites_.empty() ? squared_cap : 0;
-        if constexpr (Dim == 2) {
-            polygon_.start(cap);
-            farthest = cut(sites_.size(), {0, 0}, {1, 0}, {0, 1});
-        } else {
-            for (std::size_t face = 0; face < sites_.size() && farthest < squared_cap; ++face) {
-                farthest = std::max(farthest, farthest_of_face(face, cap));
+        cell_.start(cap);
+        double farthest = cell_.farthest();
+        // A heap, as most of the sites are never asked for inside the fluid.
+        for (auto end = sites_.end(); end != sites_.begin(); --end) {
+            std::pop_heap(sites_.begin(), end, farther);
+            const Site& nearest = *(end - 1);
+            if (nearest.squared_distance >= 4 * farthest) {
+                break;
+            }
+            if (cell_.cut(nearest.r, nearest.squared_distance / 2)) {
+                farthest = cell_.farthest();
             }
         }
-        return std::sqrt(std::min(farthest, squared_cap));
+        return std::min(std::sqrt(farthest), cap);
     }
 
 private:
@@ -97,77 +194,28 @@ private:
         Point r; // from the particle
     };
 
-    static double dot(const Point& a, const Point& b) {
-        double sum = 0;
-        for (int d = 0; d < Dim; ++d) {
-            sum += a[d] * b[d];
-        }
-        return sum;
+    /// An order that depends on where the neighbours are, not on how they are numbered.
+    static bool farther(const Site& a, const Site& b) {
+        return a.squared_distance != b.squared_distance ? a.squared_distance > b.squared_distance : a.r > b.r;
     }
 
-    /// In an order that depends on where the neighbours are, not on how they are numbered.
     void gather_sites(const Row<Dim>& row, double squared_radius) {
         sites_.clear();
         for (int k = 0; k < row.count; ++k) {
-            Site site;
+            Site site{0, {}};
             for (int d = 0; d < Dim; ++d) {
                 site.r[d] = -row.separation[d][k];
+                site.squared_distance += site.r[d] * site.r[d];
             }
-            site.squared_distance = dot(site.r, site.r);
             if (site.squared_distance > 0 && site.squared_distance < squared_radius) {
                 sites_.push_back(site);
             }
         }
-        std::sort(sites_.begin(), sites_.end(), [](const Site& a, const Site& b) {
-            return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance
-                                                            : a.r < b.r;
-        });
-    }
-
-    /// Cuts the polygon in the plane origin + x e0 + y e1 by the half-way planes of all sites but `own`.
-    /// Returns the largest squared distance of what is left from the particle.
-    double cut(std::size_t own, const Point& origin, const Point& e0, const Point& e1) {
-        const double height = dot(origin, origin);
-        double farthest = height + polygon_.farthest();
-        for (std::size_t k = 0; k < sites_.size() && sites_[k].squared_distance < 4 * farthest; ++k) {
-            const Point& r = sites_[k].r;
-            if (k != own &&
-                polygon_.cut(dot(e0, r), dot(e1, r), sites_[k].squared_distance / 2 - dot(origin, r))) {
-                if (polygon_.empty()) {
-                    return 0;
-                }
-                farthest = height + polygon_.farthest();
-            }
-        }
-        return farthest;
-    }
-
-    double farthest_of_face(std::size_t face, double cap) {
-        const Point& r = sites_[face].r;
-        const double distance = std::sqrt(sites_[face].squared_distance);
-        Point origin;
-        Point normal;
-        int smallest = 0;
-        for (int d = 0; d < Dim; ++d) {
-            origin[d] = r[d] / 2;
-            normal[d] = r[d] / distance;
-            smallest = std::abs(normal[d]) < std::abs(normal[smallest]) ? d : smallest;
-        }
-        Point e0{};
-        e0[smallest] = 1;
-        const double along = normal[smallest];
-        const double length = std::sqrt(1 - along * along);
-        for (int d = 0; d < Dim; ++d) {
-            e0[d] = (e0[d] - along * normal[d]) / length;
-        }
-        const Point e1{normal[1] * e0[2] - normal[2] * e0[1], normal[2] * e0[0] - normal[0] * e0[2],
-                       normal[0] * e0[1] - normal[1] * e0[0]};
-        polygon_.start(cap);
-        return cut(face, origin, e0, e1);
+        std::make_heap(sites_.begin(), sites_.end(), farther);
     }
 
     std::vector<Site> sites_;
-    ConvexPolygon polygon_;
+    std::conditional_t<Dim == 2, ConvexPolygon, ConvexPolyhedron> cell_;
 };
 
 } // namespace sphvv::solver
