@@ -358,6 +358,27 @@ TYPED_TEST(FreeSurface, IsNotFoundWhereSupportsAreFull) {
     }
 }
 
+// The table in lowest_eigenvalue.cpp.
+TEST(FreeSurface, TheEigenvalueInPrintMarksTheInsideOfDisorderedParticles) {
+    struct Case {
+        const char* kernel;
+        double h_over_dx;
+        double displacement;
+        double share;
+    };
+    for (const Case& expected : {Case{"quintic_spline", 1.3, 0.02, 0}, Case{"quintic_spline", 1.3, 0.1, 0.31},
+                                 Case{"quintic_spline", 1.3, 0.2, 0.68}, Case{"cubic_spline", 1.3, 0.1, 0.38},
+                                 Case{"cubic_spline", 3, 0.1, 0}, Case{"wendland_c2", 1.3, 0.02, 0.68}}) {
+        const Sample<2> bulk(60, expected.displacement, 1, true, 1, expected.h_over_dx,
+                             kernels::find(expected.kernel));
+        const std::vector<double> V(bulk.count(), bulk.volume());
+        std::vector<std::uint8_t> surface(bulk.count());
+        free_surface::find("lowest_eigenvalue").detect<2>({&bulk.list, V.data(), bulk.dx}, {surface.data()});
+        const double marked = std::accumulate(surface.begin(), surface.end(), 0);
+        EXPECT_NEAR(marked / bulk.count(), expected.share, 0.04) << expected.kernel << expected.displacement;
+    }
+}
+
 TYPED_TEST(FreeSurface, MovesAndTurnsWithTheFluidAndIsIndifferentToNumbers) {
     constexpr int dim = TypeParam::value;
     const Points<dim> points = block<dim>(cube_of<dim>(dim == 2 ? 14 : 8), 0.05, 0.2, 7);
