@@ -59,6 +59,56 @@ Values resolve(const Solution& solution, const Values& given) {
     return values;
 }
 
+std::string_view to_string(Equations equations) {
+    switch (equations) {
+    case Equations::navier_stokes:
+        return "Navier-Stokes";
+    case Equations::reynolds_averaged:
+        return "Reynolds-averaged";
+    case Equations::hydrostatic:
+        return "hydrostatic";
+    case Equations::impulsive:
+        break;
+    }
+    return "impulsive";
+}
+
+Boundary flat_boundary(std::string_view name, BoundaryKind kind, const Domain& domain, Face face,
+                       const Vector& velocity) {
+    const double plane = face.high ? domain.high[face.direction] : domain.low[face.direction];
+    return {name, kind,
+            [face, plane](const Vector& x) {
+                const double ahead = x[face.direction] - plane;
+                return face.high ? -ahead : ahead;
+            },
+            [velocity](const Vector&, double) { return velocity; }, face};
+}
+
+std::vector<Boundary> boundaries(const Solution& solution, const Values& values) {
+    return solution.boundaries != nullptr ? solution.boundaries(values) : std::vector<Boundary>{};
+}
+
+bool has_quantity(const Solution& solution, std::string_view name) {
+    return std::ranges::find(solution.quantities, name, &Quantity::name) != solution.quantities.end();
+}
+
+Scalar quantity(const Solution& solution, std::string_view name, const Values& values) {
+    std::string names;
+    for (const Quantity& candidate : solution.quantities) {
+        if (candidate.name == name) {
+            return candidate.bind(values);
+        }
+        names.append(names.empty() ? "" : ", ").append(candidate.name);
+    }
+    throw std::invalid_argument("The exact solution " + std::string(solution.name) + " has no quantity \"" +
+                                std::string(name) + "\"; accepted: " + (names.empty() ? "none" : names) +
+                                ".");
+}
+
+double density(const State& state, const Medium& medium) {
+    return state.density.value_or(medium.density);
+}
+
 namespace solutions {
 
 const Solution& find(std::string_view name) {

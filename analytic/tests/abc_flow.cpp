@@ -30,15 +30,12 @@ TEST(AbcFlow, HasTheStatedInitialValues) {
 TEST(AbcFlow, HasBernoulliPressureAtAllTimes) {
     Random random(3);
     const Values values = random_values(abc_flow(), random);
-    const Medium medium = abc_flow().medium(values);
-    const Evaluator fields = abc_flow().bind(values);
-    const Domain domain = abc_flow().domain(values);
-    const Rates scales = rates(abc_flow(), domain, medium);
+    const Flow flow(abc_flow(), values);
     for (int draw = 0; draw < 20; ++draw) {
-        const double t = random_time(scales, random);
-        const State state = fields(random_point(abc_flow(), domain, random), t);
-        const double total = state.pressure + medium.density / 2 * dot(state.velocity, state.velocity);
-        const double expected = medium.density * abc_flow().kinetic_energy(values, t);
+        const double t = random_time(flow, random);
+        const State state = flow.fields(random_point(flow, random), t);
+        const double total = state.pressure + flow.medium.density / 2 * dot(state.velocity, state.velocity);
+        const double expected = flow.medium.density * abc_flow().kinetic_energy(values, t);
         EXPECT_NEAR(total / expected, 1, 1e-13);
     }
 }
@@ -48,7 +45,7 @@ TEST(AbcFlow, HasTheStatedRootMeanSquareSpeedForAllAmplitudes) {
         const Values values{{"speed", 3}, {"a", 2}, {"b", b}};
         const Domain domain = abc_flow().domain(values);
         const Evaluator fields = abc_flow().bind(values);
-        const double mean = volume_mean(abc_flow(), domain, [&](const Vector& x) {
+        const double mean = volume_mean(domain, 3, [&](const Vector& x) {
             const Vector u = fields(x, 0).velocity;
             return dot(u, u);
         });
@@ -69,18 +66,13 @@ TEST(AbcFlow, IsABeltramiField) {
     Random random(4);
     for (int draw = 0; draw < 10; ++draw) {
         const Values values = random_values(abc_flow(), random);
-        const Medium medium = abc_flow().medium(values);
-        const Domain domain = abc_flow().domain(values);
-        const Evaluator fields = abc_flow().bind(values);
-        const Rates scales = rates(abc_flow(), domain, medium);
-        const double t = random_time(scales, random);
-        const double k = 2 * pi / extent(domain, 0);
-        const double speed = sampled_maximum_speed(abc_flow(), domain, fields, t);
-        for (int point = 0; point < 20; ++point) {
-            const Vector x = random_point(abc_flow(), domain, random);
-            const auto gradient =
-                derivatives_at(abc_flow(), domain, fields, x, t, time_step(scales)).velocity_gradient;
-            const Vector u = fields(x, t).velocity;
+        const Flow flow(abc_flow(), values);
+        const double t = random_time(flow, random);
+        const double k = 2 * pi / extent(flow.domain, 0);
+        const double speed = sampled_maximum_speed(flow, t);
+        for (const Vector& x : random_points(flow, random, 20)) {
+            const auto gradient = space_derivatives(flow, x, t).velocity_gradient;
+            const Vector u = flow.fields(x, t).velocity;
             EXPECT_NEAR((gradient[2][1] - gradient[1][2]) / (k * speed), u[0] / speed, continuity_tolerance);
             EXPECT_NEAR((gradient[0][2] - gradient[2][0]) / (k * speed), u[1] / speed, continuity_tolerance);
             EXPECT_NEAR((gradient[1][0] - gradient[0][1]) / (k * speed), u[2] / speed, continuity_tolerance);
@@ -117,8 +109,7 @@ TEST(AbcFlow, NeverExceedsItsMaximumSpeedForAnyAmplitudes) {
     for (int draw = 0; draw < 20; ++draw) {
         const Values values{
             {"a", random.uniform(0.01, 1)}, {"b", random.uniform(0, 1)}, {"c", random.uniform(0, 1)}};
-        const double sampled =
-            sampled_maximum_speed(abc_flow(), abc_flow().domain(values), abc_flow().bind(values), 0);
+        const double sampled = sampled_maximum_speed(Flow(abc_flow(), values), 0);
         EXPECT_NEAR(sampled / abc_flow().medium(values).maximum_speed, 1, 1e-9)
             << values.at("a") << " " << values.at("b") << " " << values.at("c");
     }
