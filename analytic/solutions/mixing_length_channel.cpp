@@ -5,7 +5,7 @@
 //   du/dz = 2T/(ν + √(ν² + 4L²T)),  T = u*² (1 − z/H),
 // so that the ordinary differential equation for u is a quadrature. L = κz √(1 − z/H) [1 − e^{−z⁺/A⁺}]:
 // Issa's length (as for the logarithmic law) with van Driest's damping. For A⁺ = 26 and κ = 0.41 the law far
-// from the wall has B = 5.2833 (quantity log_law_constant; tests/turbulent_channel.cpp). Within a few wall
+// from the wall has B = 5.2771 (quantity log_law_constant; tests/turbulent_channel.cpp). Within a few wall
 // units of the surface, where ν_T falls below ν, the gradient leaves u*/κz for zero.
 #include "sphvv/analytic/solutions.hpp"
 

@@ -87,5 +87,17 @@ TEST(Find, NamesAnUnknownSolutionAndTheAcceptedOnes) {
     EXPECT_NE(refusal([] { solutions::find(""); }), "");
 }
 
+TEST(Quantity, NamesAnUnknownQuantityAndTheAcceptedOnes) {
+    const Solution& column = solutions::find("hydrostatic");
+    EXPECT_EQ(refusal([&] { quantity(column, "depth", {}); }),
+              "The exact solution hydrostatic has no quantity \"depth\"; accepted: settled_depth, "
+              "bed_pressure.");
+    const Solution& vortices = solutions::find("taylor_green");
+    EXPECT_EQ(refusal([&] { quantity(vortices, "depth", {}); }),
+              "The exact solution taylor_green has no quantity \"depth\"; accepted: none.");
+    EXPECT_TRUE(boundaries(vortices, {}).empty());
+    EXPECT_EQ(density(State{}, vortices.medium({})), 1000);
+}
+
 } // namespace
 } // namespace sphvv::analytic
