@@ -6,8 +6,8 @@
 // Each has two series that hold at every tau > 0: eigenfunctions, which decay as exp(-lambda^2 tau), and
 // images of the solution in a half-space, which fall off as exp(-m^2/tau). The functions without suffix take
 // the images below tau = switch_time and the eigenfunctions above; there eigenfunction_terms and image_terms
-// leave out less than 1e-17. H. S. Carslaw & J. C. Jaeger, Conduction of Heat in Solids (2nd ed. 1959), §3.3
-// (eigenfunctions), §12.5 (images) and appendix II (repeated integrals of erfc).
+// leave out less than 1e-17. H. S. Carslaw & J. C. Jaeger, Conduction of Heat in Solids (2nd ed. 1959), ch.
+// III (eigenfunctions), ch. XII (small times) and appendix II (repeated integrals of erfc).
 
 namespace sphvv::analytic::layer {
 

@@ -87,7 +87,7 @@ const Solution& couette() {
             "Σ [erfc((2m + 1 − y/D)/2√τ) − erfc((2m + 1 + y/D)/2√τ)] instead; either within 1e-15 of V",
         .source =
             "H. Schlichting, Boundary-Layer Theory (7th ed. 1979) ch. V, formation of Couette flow; H. S. "
-            "Carslaw & J. C. Jaeger, Conduction of Heat in Solids (2nd ed. 1959) §3.4, §12.5",
+            "Carslaw & J. C. Jaeger, Conduction of Heat in Solids (2nd ed. 1959) ch. III, XII",
         .dimension = 2,
         .parameters =
             {

@@ -74,9 +74,9 @@ double integral(double low, double high, const Function& function) {
 class Profile {
 public:
     explicit Profile(const Constants& constants) : c(constants) {
-        const double steps = std::ceil(4 * std::log1p(c.reach / 2));
-        for (double i = 0; i <= steps; ++i) {
-            ends.push_back(std::expm1(i / steps * std::log1p(c.reach / 2)));
+        const int steps = static_cast<int>(std::ceil(4 * std::log1p(c.reach / 2)));
+        for (int i = 0; i <= steps; ++i) {
+            ends.push_back(std::expm1(std::log1p(c.reach / 2) * i / steps));
         }
         for (auto i = static_cast<std::ptrdiff_t>(ends.size()) - 2; i >= 0; --i) {
             ends.push_back(c.reach - ends[i]);

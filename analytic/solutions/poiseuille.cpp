@@ -126,7 +126,7 @@ const Solution& poiseuille() {
             "the "
             "start. τ = 4νt/D² < 0.1: images of the half-space solution instead; either within 1e-15 of 3U/2",
         .source = "H. Schlichting, Boundary-Layer Theory (7th ed. 1979) ch. V; H. S. Carslaw & J. C. Jaeger, "
-                  "Conduction of Heat in Solids (2nd ed. 1959) §3.14 (a slab with uniform heat production)",
+                  "Conduction of Heat in Solids (2nd ed. 1959) ch. III (a slab that is heated evenly)",
         .dimension = 2,
         .parameters =
             {

@@ -120,7 +120,7 @@ const Solution& poiseuille_free_surface() {
                    "1e-15 of 3U/2",
         .source =
             "R. Issa, PhD thesis, UMIST, 2005, §4.2 (steady flow, linear start); transients after H. S. "
-            "Carslaw & J. C. Jaeger, Conduction of Heat in Solids (2nd ed. 1959) §3.14",
+            "Carslaw & J. C. Jaeger, Conduction of Heat in Solids (2nd ed. 1959) ch. III",
         .dimension = 2,
         .parameters =
             {

@@ -374,9 +374,9 @@ const Solution& taylor_couette() {
             "νt/(r2 − r1)² < 1e-5: expansion for small times. Error 1e-11 of the walls' velocity",
         .source = "H. Schlichting, Boundary-Layer Theory (7th ed. 1979) ch. V; G. N. Watson, A Treatise on "
                   "the Theory "
-                  "of Bessel Functions (2nd ed. 1944) §7.23, §15.53; H. S. Carslaw & J. C. Jaeger, "
+                  "of Bessel Functions (2nd ed. 1944) ch. VII, XV; H. S. Carslaw & J. C. Jaeger, "
                   "Conduction of Heat "
-                  "in Solids (2nd ed. 1959) §13.3–13.4 (method)",
+                  "in Solids (2nd ed. 1959) ch. XIII (method)",
         .dimension = 2,
         .parameters =
             {
