@@ -99,7 +99,7 @@ struct Quantity {
 struct Medium {
     double density;             ///< kg/m3; of a compressible medium, where p = 0
     double kinematic_viscosity; ///< m2/s, that of the equations
-    double maximum_speed;       ///< m/s, over the domain and all t >= 0 (t > 0 for walls that start at once)
+    double maximum_speed;       ///< m/s, over the domain and all t >= 0; infinite where a corner is singular
     Vector body_force{};        ///< m/s2, uniform and constant
 };
 

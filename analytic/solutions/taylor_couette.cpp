@@ -278,12 +278,16 @@ public:
                                    }).integral();
             panels.push_back({ends[i], pressure, u, rise});
             pressure += rise(ends[i]);
+            squares += Chebyshev(ends[i - 1], ends[i], [&](double r) {
+                           return u(r) * u(r) * r;
+                       }).integral()(ends[i]);
         }
     }
     double velocity(double r) const { return panel(r).velocity(r); }
     double pressure(double r) const { return panel(r).start + panel(r).rise(r); }
 
     const double time;
+    double squares = 0; ///< ∫ u² r dr (m4/s2)
 
 private:
     struct Panel {
@@ -335,6 +339,12 @@ Evaluator bind(const Values& given) {
         const double u = profile->velocity(r);
         return State{{-u * x[1] / r, u * x[0] / r, 0}, profile->pressure(r)};
     };
+}
+
+/// 2/(r2² − r1²) ∫ (u²/2) r dr.
+double kinetic_energy(const Values& given, double t) {
+    const Constants c = constants(given);
+    return Profile(Flow(c), t).squares / ((c.r2 - c.r1) * (c.r2 + c.r1));
 }
 
 std::vector<Boundary> cylinders(const Values& given) {
@@ -393,6 +403,7 @@ const Solution& taylor_couette() {
         .domain = domain,
         .medium = medium,
         .bind = bind,
+        .kinetic_energy = kinetic_energy,
         .boundaries = cylinders,
         .quantities =
             {

@@ -248,6 +248,9 @@ TEST_P(EverySolution, HasTheDeclaredKineticEnergy) {
     }
     for_parameter_sets([&](const Values& values) {
         const Flow flow(solution, values);
+        if (flow.curved()) { // no mean over a box; in the tests of the solution
+            return;
+        }
         EXPECT_LT(kinetic_energy_error(flow, random), flow.bounded() ? mean_tolerance : value_tolerance);
     });
 }

@@ -36,6 +36,22 @@ TEST(TaylorCouette, HasTheSteadyVelocityAndPressureInClosedForm) {
     EXPECT_NEAR(quantity(flow(), "inner_torque", {})({}, 1e4), -4 * pi * 10 * B, 1e-11);
 }
 
+TEST(TaylorCouette, HasTheDeclaredKineticEnergy) {
+    for (const double ratio : {0.2, 0.9}) {
+        for (const double tau : {1e-4, 0.01, 0.2}) {
+            const Values values{{"radius_ratio", ratio}, {"rotation_ratio", -0.4}, {"steady_start", 0.1}};
+            const double gap = 1 / ratio - 1;
+            const double t = tau * gap * gap / flow().medium(values).kinematic_viscosity;
+            const Domain line{{1, 0, 0}, {1 / ratio, 0, 0}, {}};
+            const Scalar u = quantity(flow(), "azimuthal_velocity", values);
+            const double mean =
+                volume_mean(line, 1, [&](const Vector& x) { return std::pow(u(x, t), 2) * x[0]; }) * gap /
+                (1 / (ratio * ratio) - 1);
+            EXPECT_NEAR(flow().kinetic_energy(values, t) / mean, 1, 1e-11) << ratio << " " << tau;
+        }
+    }
+}
+
 TEST(TaylorCouette, TurnsAsASolidBody) {
     const Evaluator fields = flow().bind({{"steady_start", 1}, {"rotation_ratio", 1}});
     const State state = fields({0, 1.5, 0}, 0);
