@@ -176,6 +176,37 @@ void Simulation<Dim>::fill_walls(Field& field, Parity parity) const {
     images.fill(field, parity);
 }
 
+template <int Dim>
+Vector<Dim> Simulation<Dim>::wall_pressure_gradient() const {
+    Vector<Dim> force = Vector<Dim>::Zero();
+    if (wall_pressure == WallPressure::hydrostatic) {
+        for (int d = 0; d < Dim; ++d) {
+            force[d] = density * body_force[d];
+        }
+    }
+    return force;
+}
+
+template <int Dim>
+void Simulation<Dim>::fill_walls_forced(Field& field, double dt) const {
+    fill_walls(field, Parity::velocity);
+    images.fill(field, Parity::velocity, dt / density * wall_pressure_gradient());
+}
+
+template <int Dim>
+std::vector<double> Simulation<Dim>::wall_pressure_differences() const {
+    return images.differences(wall_pressure_gradient(), particles.position);
+}
+
+template <int Dim>
+void Simulation<Dim>::fill_walls_pressure(Field& pressure) const {
+    fill_walls(pressure, Parity::even);
+    const std::vector<double> difference = wall_pressure_differences();
+    for (std::size_t k = 0; k < difference.size(); ++k) {
+        pressure[0][particles.size() + k] += difference[k];
+    }
+}
+
 namespace {
 
 /// The box, and where it has walls as much more of it as images need.
@@ -237,6 +268,21 @@ void renew_neighbours(Simulation<Dim>& simulation) {
 }
 
 template <int Dim>
+void add_surface_stage(Simulation<Dim>& simulation) {
+    if (!simulation.free_surface) {
+        return;
+    }
+    simulation.add_stage("free_surface", [](Simulation<Dim>& s) {
+        FreeSurface& surface = *s.free_surface;
+        surface.at_surface.resize(s.particles.size());
+        surface.volume.assign(s.particles.with_images(), s.particle_mass / s.density);
+        surface.detector->detect<Dim>({&s.neighbours, surface.volume.data(), s.particle_spacing},
+                                      surface.threshold, {surface.at_surface.data()});
+        s.count_sweeps(1);
+    });
+}
+
+template <int Dim>
 double maximum_speed(const Simulation<Dim>& simulation) {
     const Field& u = simulation.particles.velocity;
     const int count = static_cast<int>(simulation.particles.size());
@@ -281,11 +327,15 @@ std::array<double, Dim> momentum(const Simulation<Dim>& simulation) {
 
 #define SPHVV_INSTANTIATE(Dim)                                                                               \
     template void Simulation<Dim>::fill_walls(Field&, Parity) const;                                         \
+    template void Simulation<Dim>::fill_walls_forced(Field&, double) const;                                  \
+    template void Simulation<Dim>::fill_walls_pressure(Field&) const;                                        \
+    template std::vector<double> Simulation<Dim>::wall_pressure_differences() const;                         \
     template void advance(Simulation<Dim>&);                                                                 \
     template double even_step(const Simulation<Dim>&, double);                                               \
     template void wrap_positions(Simulation<Dim>&);                                                          \
     template void find_neighbours(Simulation<Dim>&, double);                                                 \
     template void renew_neighbours(Simulation<Dim>&);                                                        \
+    template void add_surface_stage(Simulation<Dim>&);                                                       \
     template double maximum_speed(const Simulation<Dim>&);                                                   \
     template double kinetic_energy(const Simulation<Dim>&);                                                  \
     template std::array<double, Dim> momentum<Dim>(const Simulation<Dim>&);

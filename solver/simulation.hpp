@@ -2,6 +2,7 @@
 
 #include "sphvv/solver/boundaries/images.hpp"
 #include "sphvv/solver/box.hpp"
+#include "sphvv/solver/free_surface.hpp"
 #include "sphvv/solver/neighbours/neighbour_list.hpp"
 #include "sphvv/solver/particles.hpp"
 #include "sphvv/solver/settings.hpp"
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -48,6 +50,14 @@ struct SurvivalBounds {
     std::string minimum_spacing_reason;
 };
 
+/// The free surface of a scene that has one: which particles lie at it. Found anew in every step.
+struct FreeSurface {
+    const Detector* detector;
+    double threshold;
+    std::vector<std::uint8_t> at_surface{}; ///< 1 or 0, particle by particle
+    std::vector<double> volume{};           ///< m^dim
+};
+
 /// A scene in motion: particles, their neighbours, the stages that advance them, and what has been counted.
 template <int Dim>
 struct Simulation {
@@ -61,9 +71,12 @@ struct Simulation {
     /// What the wall particles are, in the order of their identities.
     std::vector<WallParticle<Dim>> wall_particles;
     WallMethod wall_method = WallMethod::mirror;
+    WallPressure wall_pressure = WallPressure::hydrostatic;
     Images<Dim> images; ///< of particles near walls, made with the neighbour list
     Settings settings;  ///< of the scheme
     const Kernel* kernel = nullptr;
+
+    std::optional<FreeSurface> free_surface; ///< where the pressure is 0
 
     double particle_spacing = 0;          ///< dx, m
     double smoothing_length = 0;          ///< h, m
@@ -97,6 +110,14 @@ struct Simulation {
     /// Values of a field at wall particles that do not evolve there, and at images: to be called before every
     /// sweep that reads the field at neighbours.
     void fill_walls(Field& field, Parity parity) const;
+    /// The same for the velocity u* (m/s), which has the body force's share of the time dt (s) in it.
+    void fill_walls_forced(Field& field, double dt) const;
+    /// The same for the pressure, Pa.
+    void fill_walls_pressure(Field& pressure) const;
+    /// By how much the pressure of every image differs from that of its particle, Pa.
+    std::vector<double> wall_pressure_differences() const;
+    /// rho f where the walls' pressure is hydrostatic, Pa/m.
+    Vector<Dim> wall_pressure_gradient() const;
     /// Books `sweeps` visits of every pair in the neighbour list.
     void count_sweeps(int sweeps) { work.pair_evaluations += sweeps * neighbours.pairs(); }
 };
@@ -123,6 +144,10 @@ void find_neighbours(Simulation<Dim>& simulation, double skin);
 /// fields formed earlier in the step stay theirs.
 template <int Dim>
 void renew_neighbours(Simulation<Dim>& simulation);
+
+/// Adds the stage that finds the particles at the free surface, if the scene has one.
+template <int Dim>
+void add_surface_stage(Simulation<Dim>& simulation);
 
 /// Largest |u| over the particles, m/s. NaN if any component is not a number.
 template <int Dim>

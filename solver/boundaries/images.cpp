@@ -100,7 +100,7 @@ void Images<Dim>::stack(std::span<const Wall<Dim>> walls, std::span<const WallPa
 }
 
 template <int Dim>
-void Images<Dim>::fill(Field& field, Parity parity) const {
+void Images<Dim>::fill(Field& field, Parity parity, const Vector<Dim>& common) const {
     for (std::size_t k = 0; k < size(); ++k) {
         const std::size_t from = source_[k];
         const std::size_t to = first_ + k;
@@ -115,11 +115,11 @@ void Images<Dim>::fill(Field& field, Parity parity) const {
             set_vector<Dim>(field, to, reflected<Dim>(vector_at<Dim>(field, from), normal));
             break;
         case Parity::velocity: {
-            const Vector<Dim> relative = vector_at<Dim>(field, from) - wall_velocity;
+            const Vector<Dim> relative = vector_at<Dim>(field, from) - common - wall_velocity;
             const Vector<Dim> image = carried                 ? relative
                                       : slip == Slip::no_slip ? Vector<Dim>(-relative)
                                                               : reflected<Dim>(relative, normal);
-            set_vector<Dim>(field, to, wall_velocity + image);
+            set_vector<Dim>(field, to, common + wall_velocity + image);
             break;
         }
         case Parity::tensor: {
@@ -140,6 +140,15 @@ void Images<Dim>::fill(Field& field, Parity parity) const {
         }
         }
     }
+}
+
+template <int Dim>
+std::vector<double> Images<Dim>::differences(const Vector<Dim>& slope, const Field& position) const {
+    std::vector<double> result(size());
+    for (std::size_t k = 0; k < size(); ++k) {
+        result[k] = slope.dot(vector_at<Dim>(position, first_ + k) - vector_at<Dim>(position, particle_[k]));
+    }
+    return result;
 }
 
 template <int Dim>

@@ -36,7 +36,12 @@ public:
                double radius, double t, Particles<Dim>& particles);
 
     /// Values of a field at the images, from those at the particles.
-    void fill(Field& field, Parity parity) const;
+    void fill(Field& field, Parity parity) const { fill(field, parity, Vector<Dim>::Zero()); }
+    /// The same for a velocity of which `common` is what everything has, images alike: only the rest is
+    /// reflected.
+    void fill(Field& field, Parity parity, const Vector<Dim>& common) const;
+    /// slope . (r_k - r_j) of every image k of a particle j: what a quantity with that gradient differs by.
+    std::vector<double> differences(const Vector<Dim>& slope, const Field& position) const;
     void fill(double* values, int first) const; ///< the same for one even array with images from `first` on
 
     /// Whether a pair of particles sees of each other's images what it sees of the other's. Not so with wall

@@ -45,6 +45,18 @@ enum class WallMethod {
     dummy
 };
 
+/// The pressure gradient normal to a wall.
+enum class WallPressure {
+    /// rho f.n, which holds the fluid up against the body force f: images have the pressure of their particle
+    /// and
+    /// rho f.(distance to it), and the share dt f of a velocity is not reflected.
+    hydrostatic,
+    /// 0, as published: the reflected share of the velocity makes the pressure, but its gradient at the first
+    /// row
+    /// is half of it. Source: Xu 2009 §3.5.
+    even
+};
+
 /// A wall that is at rest.
 template <int Dim>
 Vector<Dim> at_rest(const Vector<Dim>& /*x*/, double /*t*/) {

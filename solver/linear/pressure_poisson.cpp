@@ -242,6 +242,17 @@ void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours, const Ima
 }
 
 template <int Dim>
+void PressurePoisson<Dim>::set_image_differences(const std::vector<double>& difference) {
+    for_each_row(*neighbours_, [&](int i, const auto& row) {
+        double total = 0;
+        for (int k = 0; k < row.count; ++k) {
+            total += row.index[k] < size() ? 0 : weights(i)[k] * difference[row.index[k] - size()];
+        }
+        source_[i] += total;
+    });
+}
+
+template <int Dim>
 void PressurePoisson<Dim>::fix_at_zero(int i) {
     fixed_.resize(size());
     fixed_[i] = 1;

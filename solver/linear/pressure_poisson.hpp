@@ -22,8 +22,7 @@ struct LinearSolve {
 /// The discrete Poisson problem on the particles: sum_j w_ij (p_i - p_j) = b_i, with weights that a Laplacian
 /// operator writes into the layout of the neighbour list.
 ///
-/// An image of j beyond a wall has the pressure of j: grad p . n = 0 at the wall, in which the acceleration
-/// of the wall-normal velocity that the source holds includes that by gravity.
+/// An image of j beyond a wall has the pressure of j, plus a given difference.
 ///
 /// The matrix is never copied: products run over the list. Constants are in its null space (no free
 /// surface), so the mean of the right-hand side is projected out, and so is the mean of each product where
@@ -62,6 +61,10 @@ public:
     /// solution is 0. No solver gets from a first guess of another size to a residual that is small against
     /// round-off.
     void set_round_off(double root_mean_square) { round_off_ = root_mean_square; }
+
+    /// Takes given differences p_k - p_j of images k and their particles j (Pa, image by image) to the
+    /// sources, of which the equations have been written.
+    void set_image_differences(const std::vector<double>& difference);
 
     /// p_i = 0 takes the place of equation i, which has been written. With one such particle the solution is
     /// unique, and no mean is projected out of anything.

@@ -35,6 +35,7 @@ void add_stages_at_moved_positions(Simulation<Dim>& s) {
     s.add_stage("time_step", choose_time_step<Dim>);
     s.add_stage("drift", drift<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });
+    add_surface_stage(s);
     s.add_stage("viscosity", [projection](Simulation<Dim>& sim) {
         form_viscous_velocity(sim, *projection, sim.time_step);
     });

@@ -46,6 +46,7 @@ void add_stages_at_old_positions(Simulation<Dim>& s, double relaxation) {
         relaxation > 0 ? &s.particles.field("particle_density", 1, Lifetime::scratch, "density") : nullptr;
     s.add_stage("time_step", choose_time_step<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
+    add_surface_stage(s);
     s.add_stage("viscosity", [projection](Simulation<Dim>& sim) {
         form_viscous_velocity(sim, *projection, sim.time_step);
     });

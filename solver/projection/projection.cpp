@@ -275,7 +275,7 @@ double mean_density(const Simulation<Dim>& s, const Field& density) {
 
 template <int Dim>
 void write_divergence_equations(Simulation<Dim>& s, Projection<Dim>& p) {
-    s.fill_walls(p.velocity_next, Parity::velocity);
+    s.fill_walls_forced(p.velocity_next, s.time_step);
     fill_density_images(s, p);
     const auto u = constant_arrays<Dim>(p.velocity_next);
     // The density is in the weights where it varies.
@@ -326,6 +326,16 @@ TimeOrder euler_order(const Settings& /*settings*/) {
 
 template <int Dim>
 void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pressure) {
+    if (!s.images.empty()) {
+        poisson.set_image_differences(s.wall_pressure_differences());
+    }
+    if (s.free_surface) {
+        for (int i = 0; i < poisson.size(); ++i) {
+            if (s.free_surface->at_surface[i] != 0) {
+                poisson.fix_at_zero(i);
+            }
+        }
+    }
     const LinearSolve solve = poisson.solve(pressure[0]);
     s.work.solver_iterations += solve.iterations;
     s.work.matrix_entries += solve.matrix_entries;
@@ -339,7 +349,7 @@ void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pre
 template <int Dim>
 void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, Field& pressure, double scale,
                                 Field& target) {
-    s.fill_walls(pressure, Parity::even);
+    s.fill_walls_pressure(pressure);
     fill_density_images(s, p);
     const auto changed = arrays<Dim>(target);
     const double* rho = p.density != nullptr ? (*p.density)[0] : nullptr;

@@ -98,8 +98,9 @@ Conserves conserves(const Settings& settings);
 /// Order in time of u^{n+1} = u^n + dt (...)(r* = r^n + dt u^n): one.
 TimeOrder euler_order(const Settings& settings);
 
-/// Solves the problem whose weights and sources are written, from the pressure as first guess; books the
-/// iterations and the matrix entries. Throws Diverged where the solver stops short of its tolerance.
+/// Solves the problem whose weights and sources are written, with the pressure 0 at a free surface, from the
+/// pressure as first guess; books the iterations and the matrix entries. Throws Diverged where the solver
+/// stops short of its tolerance.
 template <int Dim>
 void solve_poisson(Simulation<Dim>& simulation, PressurePoisson<Dim>& poisson, Field& pressure);
 

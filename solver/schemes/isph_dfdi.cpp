@@ -74,6 +74,7 @@ void assemble(Simulation<Dim>& s) {
     Field& density_pressure = s.particles.field("density_pressure", 1, Lifetime::state, "density_invariance");
     s.add_stage("time_step", projection::choose_time_step<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
+    add_surface_stage(s);
     s.add_stage("viscosity", [shared](Simulation<Dim>& sim) {
         form_half_viscous_velocity(sim, *shared);
         take_over_velocity(sim, *shared);

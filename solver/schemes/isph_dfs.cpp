@@ -3,6 +3,9 @@
 #include "sphvv/solver/operators/shifting_vector.hpp"
 #include "sphvv/solver/projection/moved_positions.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace sphvv::solver::schemes {
 namespace {
 
@@ -13,6 +16,31 @@ struct Shift {
     Field* gradient; ///< of every component of the velocity, then of the pressure; none below second order
 };
 
+/// Only neighbours nearer to i than i is to the free surface push it, and nothing pushes a particle of the
+/// surface. Source: Xu 2009 §2.3.
+template <int Dim>
+double shifting_radius(const Simulation<Dim>& s, int i, const Row<Dim>& row) {
+    double radius = s.neighbours.support_radius();
+    if (!s.free_surface) {
+        return radius;
+    }
+    const std::vector<std::uint8_t>& at_surface = s.free_surface->at_surface;
+    if (at_surface[i] != 0) {
+        return 0;
+    }
+    for (int k = 0; k < row.count; ++k) {
+        const int j = row.index[k];
+        if (j < static_cast<int>(at_surface.size()) && at_surface[j] != 0) {
+            double squared = 0;
+            for (int d = 0; d < Dim; ++d) {
+                squared += row.separation[d][k] * row.separation[d][k];
+            }
+            radius = std::min(radius, std::sqrt(squared));
+        }
+    }
+    return radius;
+}
+
 /// dr_i = C u_max dt R_i and grad A . dr, with the normalised gradient G-. (The thesis corrects the velocity;
 /// the pressure is corrected here too, because it is compared, and guessed from, at the new position.)
 template <int Dim>
@@ -21,7 +49,7 @@ void form_shift(Simulation<Dim>& s, const UniformVolume& volume, const double* p
     const double longest = s.settings.number("shift_limit") * s.particle_spacing;
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
-        Vector<Dim> dr = length * shifting_vector<Dim>(row, s.neighbours.support_radius());
+        Vector<Dim> dr = length * shifting_vector<Dim>(row, shifting_radius(s, i, row));
         dr *= std::min(1.0, longest / std::max(dr.norm(), 1e-300));
         for (int d = 0; d < Dim; ++d) {
             f.displacement[d][i] = dr[d];
@@ -88,7 +116,7 @@ void shift(Simulation<Dim>& s, const Shift<Dim>& f) {
         renew_neighbours(s);
     }
     s.fill_walls(particles.velocity, Parity::velocity);
-    s.fill_walls(pressure, Parity::even);
+    s.fill_walls_pressure(pressure);
     form_shift(s, volume, pressure[0], f);
     if (f.gradient != nullptr) {
         add_second_order(s, volume, f);

@@ -23,6 +23,7 @@ void assemble(Simulation<Dim>& s) {
     const auto shared = projection::make_projection(s, projection::Density::summed);
     s.add_stage("time_step", projection::choose_time_step<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
+    add_surface_stage(s);
     s.add_stage("viscosity", [shared](Simulation<Dim>& sim) {
         projection::form_viscous_velocity(sim, *shared, sim.time_step);
     });

@@ -289,7 +289,7 @@ template <int Dim>
 void evaluate(Simulation<Dim>& s, Fields<Dim>& f) {
     evaluate_without_pressure(s, f);
     projection::solve_poisson(s, f.poisson, f.pressure);
-    s.fill_walls(f.pressure, Parity::even);
+    s.fill_walls_pressure(f.pressure);
     const auto a = arrays<Dim>(f.acceleration);
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         const Vector<Dim> gradient =

@@ -164,7 +164,7 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
 template <int Dim>
 void update_volumes(const Simulation<Dim>& s, Rates<Dim>& f) {
     s.fill_walls(f.density, Parity::even);
-    s.fill_walls(f.pressure, Parity::even);
+    s.fill_walls_pressure(f.pressure);
     const int count = static_cast<int>(s.particles.with_images());
     const double* rho = f.density[0];
     double* volume = f.specific_volume[0];
