@@ -19,24 +19,92 @@ std::string_view to_string(Tier tier) {
     return "full";
 }
 
+std::vector<std::string> compared_names(const Case& c) {
+    std::vector<std::string> names = c.fields;
+    for (const Measure& measure : c.measures) {
+        names.push_back(measure.name);
+    }
+    return names;
+}
+
+namespace {
+
+std::vector<std::string> free_surface_detectors() {
+    std::vector<std::string> names;
+    for (const solver::Detector* detector : solver::free_surface::all()) {
+        names.emplace_back(detector->name);
+    }
+    return names;
+}
+
+bool has_key(const std::vector<Key>& keys, std::string_view name) {
+    return std::any_of(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
+}
+
+/// Of the solution with its declared parameters.
+bool has_boundary(const Case& c, bool surface) {
+    const analytic::Solution& solution = analytic::solutions::find(c.solution);
+    const auto all = analytic::boundaries(solution, analytic::resolve(solution, {}));
+    return std::any_of(all.begin(), all.end(), [&](const analytic::Boundary& boundary) {
+        return (boundary.kind == analytic::BoundaryKind::free_surface) == surface;
+    });
+}
+
+void add_boundary_keys(const Case& c, std::vector<Key>& keys) {
+    if (has_walls(c)) {
+        keys.push_back(Key::word("wall_method", "mirror", {"mirror", "mirror_row", "dummy"},
+                                 "what lies beyond a wall: mirror, images of the fluid; mirror_row, the same "
+                                 "and a row of wall particles on the wall; dummy, that row and layers behind "
+                                 "it with its velocity and pressure"));
+    }
+    if (has_free_surface(c)) {
+        keys.push_back(Key::word("surface_detector", "covered_ball", free_surface_detectors(),
+                                 "what tells the particles at the free surface, where a scheme asks"));
+    }
+}
+
+} // namespace
+
+bool has_walls(const Case& c) {
+    return has_boundary(c, false);
+}
+
+bool has_free_surface(const Case& c) {
+    return has_boundary(c, true);
+}
+
 std::vector<Key> case_keys(const Case& c) {
     const analytic::Solution& solution = analytic::solutions::find(c.solution);
-    std::vector<Key> keys;
+    std::vector<Key> keys = c.keys;
     for (const analytic::Parameter& p : solution.parameters) {
         keys.push_back(Key::number(std::string(p.name), p.value, p.low, p.high, std::string(p.unit),
                                    std::string(p.summary)));
     }
     keys.push_back(Key::number("end_time", c.end_time, 1e-9, 1e9, "s", "time at which errors are taken"));
-    keys.push_back(Key::word("arrangement", "lattice", {"lattice", "jittered", "settled"},
-                             "particles at the start; jittered and settled (a jittered tile relaxed by "
-                             "shifts, repeated) run five seeds per rung"));
+    const bool bounded = has_walls(c) || has_free_surface(c);
+    if (!has_key(keys, "arrangement")) {
+        keys.push_back(
+            bounded ? Key::word("arrangement", "lattice", {"lattice", "jittered"},
+                                "particles at the start; jittered runs five seeds per rung")
+                    : Key::word("arrangement", "lattice", {"lattice", "jittered", "settled"},
+                                "particles at the start; jittered and settled (a jittered tile relaxed by "
+                                "shifts, repeated) run five seeds per rung"));
+    }
+    if (bounded) {
+        add_boundary_keys(c, keys);
+    }
+    if (c.columns > 0) {
+        keys.push_back(Key::integer("columns", c.columns, 1, 1000000,
+                                    "width of the periodic box in particles: nothing varies along it"));
+    }
     keys.push_back(
         Key::number("jitter", 0.1, 0, 0.5, "1", "largest displacement of a jittered start over dx"));
     keys.push_back(
         Key::number("maximum_energy", 1.1, 1, 1e9, "1",
                     "a run whose kinetic energy exceeds its start value by this factor has gained "
                     "energy that nothing supplies: the flow is not driven, and elastic energy is of "
-                    "the order (U/c0)^2 = 1 %"));
+                    "the order (U/c0)^2 = 1 %. In a driven flow, the factor on rho U^2/2 everywhere, U the "
+                    "largest speed that is expected"));
     keys.push_back(Key::number(
         "minimum_spacing", 0.25, 0, 1, "1",
         "a run in which two particles come closer than this times dx has lost its arrangement: a strain "

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "sphvv/analytic/solution.hpp"
 #include "sphvv/solver/settings.hpp"
+#include "sphvv/solver/simulation.hpp"
 #include "sphvv/verification/order.hpp"
 
 #include <functional>
@@ -79,8 +81,31 @@ struct Claim {
     bool binding = false; ///< a goal of the project: where it is missed, the study has failed
 };
 
-/// A flow in a periodic box that starts from, and is held against, an exact solution of analytic/. One file
-/// in verification/cases/ defines one.
+struct SceneRecord;
+
+/// A number of a scene at the end of a run, held against a quantity of the exact solution: one more line of
+/// the ladder beside the fields.
+struct Measure {
+    std::string name; ///< also of the solution's quantity
+    std::function<double(const SceneRecord&, const solver::Simulation<2>&)> ours;
+};
+
+/// What a case does differently from the scene that follows from its solution. Every hook may be left out.
+struct SceneHooks {
+    /// Changes parameters of the solution that follow from other settings (a sound speed, from the scheme's).
+    std::function<void(const SceneRecord&, analytic::Values&)> values;
+    /// m/s, the largest speed that the scene expects, where the solution's own is none to go by.
+    std::function<double(const SceneRecord&, const analytic::Values&)> reference_speed;
+    /// Moves, adds or takes away particles of the lattice; component by component, m.
+    std::function<void(const SceneRecord&, std::array<std::vector<double>, 2>&)> arrange;
+    /// Sets what the scheme is to be assembled with, after particles, walls and start values.
+    std::function<void(const SceneRecord&, solver::Simulation<2>&)> prepare;
+    /// Adds stages and fields after the scheme's.
+    std::function<void(const SceneRecord&, solver::Simulation<2>&)> complete;
+};
+
+/// A flow that starts from, and is held against, an exact solution of analytic/: periodic, or between the
+/// walls and the free surface that the solution declares. One file in verification/cases/ defines one.
 struct Case {
     std::string_view name;
     std::string_view summary;
@@ -93,10 +118,29 @@ struct Case {
     std::vector<Expectation> expectations;
     std::vector<Claim> claims;
     std::vector<Study> studies;
+    /// What is compared: velocity, pressure (up to a constant where there is no free surface), density, and
+    /// fields that are quantities of the solution.
+    std::vector<std::string> fields{"velocity", "pressure"};
+    std::vector<Measure> measures{};
+    std::vector<solver::Key> keys{}; ///< of this case alone
+    /// Not 0: nothing varies along x, and the box is so many columns of particles wide unless it is told
+    /// otherwise.
+    int columns = 0;
+    bool starts_at_rest = false; ///< although the solution is that of a later time, or has no start
+    /// Direction of the profiles that are drawn, and the component of the velocity in them; none if negative.
+    int profile_direction = -1;
+    SceneHooks hooks{};
 };
 
-/// The parameters of the case's solution, and the keys of every periodic scene: end_time, arrangement,
-/// jitter, minimum_spacing.
+/// The fields and measures of a case, in the order of its tables.
+std::vector<std::string> compared_names(const Case& c);
+
+/// Whether the case's solution has a boundary of one of these kinds.
+bool has_walls(const Case& c);
+bool has_free_surface(const Case& c);
+
+/// The parameters of the case's solution, its own keys, and those of every scene: end_time, arrangement,
+/// jitter, minimum_spacing, and, where they apply, columns, wall_method and surface_detector.
 std::vector<solver::Key> case_keys(const Case& c);
 
 /// The expectation for a scheme and field under these settings of case and scheme, or nullptr.

@@ -48,7 +48,7 @@ inline double l2_error(const RunRecord& run, std::string_view field) {
 inline double largest_l2_error(const RunRecord& run) {
     double largest = 0;
     for (const Deviation& at : run.history) {
-        largest = std::max(largest, at.velocity.l2);
+        largest = std::max(largest, at.find("velocity")->l2);
     }
     return largest;
 }

@@ -152,9 +152,13 @@ Tree budget_tree(const Budget& budget) {
 Tree history_tree(const std::vector<Deviation>& history) {
     Tree rows = Tree::array();
     for (const Deviation& at : history) {
+        const auto l2 = [&](std::string_view field) {
+            const Norms* norms = at.find(field);
+            return norms == nullptr ? Tree(nullptr) : finite_or_null(norms->l2);
+        };
         rows.push_back({{"time", at.time},
-                        {"l2_velocity", finite_or_null(at.velocity.l2)},
-                        {"l2_pressure", finite_or_null(at.pressure.l2)},
+                        {"l2_velocity", l2("velocity")},
+                        {"l2_pressure", l2("pressure")},
                         {"maximum_speed", finite_or_null(at.maximum_speed)},
                         {"maximum_speed_exact", finite_or_null(at.maximum_speed_exact)},
                         {"energy_error", finite_or_null(at.energy_error)}});
@@ -162,20 +166,32 @@ Tree history_tree(const std::vector<Deviation>& history) {
     return rows;
 }
 
+Tree numbers_tree(std::span<const double> values) {
+    Tree entries = Tree::array();
+    for (const double value : values) {
+        entries.push_back(finite_or_null(value));
+    }
+    return entries;
+}
+
 Tree picture_tree(const Picture& picture) {
-    const auto list = [](std::span<const double> values) {
-        Tree entries = Tree::array();
-        for (const double value : values) {
-            entries.push_back(finite_or_null(value));
-        }
-        return entries;
-    };
     return {{"time", picture.time},
-            {"x", list(picture.x)},
-            {"y", list(picture.y)},
-            {"speed", list(picture.speed)},
-            {"pressure", list(picture.pressure)},
-            {"box", list(picture.box)}};
+            {"x", numbers_tree(picture.x)},
+            {"y", numbers_tree(picture.y)},
+            {"speed", numbers_tree(picture.speed)},
+            {"pressure", numbers_tree(picture.pressure)},
+            {"box", numbers_tree(picture.box)}};
+}
+
+Tree profiles_tree(const std::vector<Profile>& profiles) {
+    Tree list = Tree::array();
+    for (const Profile& profile : profiles) {
+        list.push_back({{"field", profile.field},
+                        {"coordinate", numbers_tree(profile.coordinate)},
+                        {"ours", numbers_tree(profile.ours)},
+                        {"exact", numbers_tree(profile.exact)}});
+    }
+    return list;
 }
 
 Tree run_tree(const LadderResult& result, const RunRecord& run) {
@@ -214,6 +230,7 @@ Tree run_tree(const LadderResult& result, const RunRecord& run) {
               {"history", history_tree(run.history)}};
     if (run.picture) {
         tree["picture"] = picture_tree(*run.picture);
+        tree["profiles"] = profiles_tree(run.profiles);
     }
     return tree;
 }

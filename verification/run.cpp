@@ -94,7 +94,7 @@ Budget budget_since(const Stock<Dim>& start, const solver::Simulation<Dim>& simu
     for (int d = 0; d < Dim; ++d) {
         squared += (end.momentum[d] - start.momentum[d]) * (end.momentum[d] - start.momentum[d]);
     }
-    const double mass = simulation.particle_mass * static_cast<double>(simulation.particles.size());
+    const double mass = simulation.particle_mass * static_cast<double>(simulation.particles.fluid_size());
     Budget budget{.momentum_drift = std::sqrt(squared) / (mass * simulation.reference_speed),
                   .kinetic_energy_start = start.kinetic,
                   .kinetic_energy_end = end.kinetic,
@@ -107,65 +107,171 @@ Budget budget_since(const Stock<Dim>& start, const solver::Simulation<Dim>& simu
     if (simulation.internal_torque) {
         budget.internal_torque = simulation.internal_torque(simulation) / start.kinetic;
     }
-    hold_to(scheme.conserves(simulation.settings), budget);
+    // Walls and forces from outside change what an isolated fluid keeps.
+    const bool isolated = simulation.walls.empty() && simulation.body_force == std::array<double, Dim>{};
+    hold_to(isolated ? scheme.conserves(simulation.settings) : solver::Conserves{false, false, false},
+            budget);
     return budget;
+}
+
+/// The exact solution of a scene at its fluid particles and its time.
+template <int Dim>
+struct Exact {
+    Exact(const SceneRecord& scene, const solver::Simulation<Dim>& simulation)
+        : solution(analytic::solutions::find(scene.flow->solution)), values(solution_values(scene)) {
+        const analytic::Evaluator state = solution.bind(values);
+        const std::size_t count = simulation.particles.fluid_size();
+        states.reserve(count);
+        points.reserve(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            analytic::Vector x{};
+            for (int d = 0; d < Dim; ++d) {
+                x[d] = simulation.particles.position[d][i];
+            }
+            points.push_back(x);
+            states.push_back(state(x, simulation.time));
+        }
+    }
+
+    template <class Of>
+    std::vector<double> list(const Of& of) const {
+        std::vector<double> result(states.size());
+        std::ranges::transform(states, result.begin(), of);
+        return result;
+    }
+    std::vector<double> quantity(const std::string& name, double time) const {
+        const analytic::Scalar at = analytic::quantity(solution, name, values);
+        std::vector<double> result;
+        for (const analytic::Vector& x : points) {
+            result.push_back(at(x, time));
+        }
+        return result;
+    }
+
+    const analytic::Solution& solution;
+    analytic::Values values;
+    std::vector<analytic::Vector> points;
+    std::vector<analytic::State> states;
+};
+
+template <int Dim>
+std::vector<double> volumes(const solver::Simulation<Dim>& simulation) {
+    std::vector<double> volume(simulation.particles.fluid_size(),
+                               simulation.particle_mass / simulation.density);
+    if (const solver::Field* density = simulation.particles.find("density")) {
+        for (std::size_t i = 0; i < volume.size(); ++i) {
+            volume[i] = simulation.particle_mass / (*density)[0][i];
+        }
+    }
+    return volume;
+}
+
+/// Exact values of a scalar that a case compares.
+template <int Dim>
+std::vector<double> exact_scalar(const std::string& name, const Exact<Dim>& exact, double time) {
+    if (name == "pressure") {
+        return exact.list([](const analytic::State& state) { return state.pressure; });
+    }
+    if (name == "density" && exact.states.front().density) {
+        return exact.list([](const analytic::State& state) { return *state.density; });
+    }
+    return exact.quantity(name, time);
+}
+
+template <int Dim>
+std::vector<FieldError> field_errors(const SceneRecord& scene, const solver::Simulation<Dim>& simulation,
+                                     const Exact<Dim>& exact) {
+    const auto& particles = simulation.particles;
+    const std::size_t count = particles.fluid_size();
+    const std::vector<double> volume = volumes(simulation);
+    std::vector<FieldError> errors;
+    for (const std::string& name : scene.flow->fields) {
+        const solver::Field* field = particles.find(name);
+        if (name == "velocity") {
+            std::array<std::vector<double>, Dim> velocity;
+            std::vector<std::span<const double>> ours;
+            std::vector<std::span<const double>> theirs;
+            for (int d = 0; d < Dim; ++d) {
+                velocity[d] = exact.list([d](const analytic::State& state) { return state.velocity[d]; });
+                ours.emplace_back((*field)[d], count);
+                theirs.emplace_back(velocity[d]);
+            }
+            errors.push_back({name, vector_norms(ours, theirs, volume)});
+        } else if (field != nullptr) { // an incompressible scheme has no density to compare
+            const std::vector<double> theirs = exact_scalar(name, exact, simulation.time);
+            const std::span<const double> ours((*field)[0], count);
+            errors.push_back({name, name == "pressure" && !simulation.free_surface
+                                        ? scalar_norms_up_to_a_constant(ours, theirs, volume)
+                                        : scalar_norms(ours, theirs, volume)});
+        }
+    }
+    return errors;
+}
+
+Norms norms_of_a_number(double ours, double exact) {
+    const double error = std::abs(ours - exact);
+    const bool relative = std::abs(exact) > 1e-300;
+    const double share = relative ? error / std::abs(exact) : error;
+    return {share, share, share, error, error, error, relative};
 }
 
 /// Holds the particles at their current positions against the exact solution at the current time.
 template <int Dim>
 Deviation compare(const SceneRecord& scene, const solver::Simulation<Dim>& simulation) {
-    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
-    const analytic::Values values = solution_values(scene);
-    const analytic::Evaluator exact = solution.bind(values);
-    const auto& particles = simulation.particles;
-    const std::size_t count = particles.size();
-    std::array<std::vector<double>, Dim> velocity;
-    std::vector<double> pressure(count);
-    std::vector<double> volume(count, simulation.particle_mass / simulation.density);
-    if (const solver::Field* density = particles.find("density")) {
-        for (std::size_t i = 0; i < count; ++i) {
-            volume[i] = simulation.particle_mass / (*density)[0][i];
+    const Exact<Dim> exact(scene, simulation);
+    Deviation deviation{.time = simulation.time,
+                        .errors = field_errors(scene, simulation, exact),
+                        .maximum_speed = maximum_speed(simulation),
+                        .energy_error = std::numeric_limits<double>::quiet_NaN()};
+    if constexpr (Dim == 2) {
+        for (const Measure& measure : scene.flow->measures) {
+            const double theirs =
+                analytic::quantity(exact.solution, measure.name, exact.values)({}, simulation.time);
+            deviation.errors.push_back(
+                {measure.name, norms_of_a_number(measure.ours(scene, simulation), theirs)});
         }
     }
-    for (auto& component : velocity) {
-        component.resize(count);
-    }
-    double fastest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        analytic::Vector x{};
-        for (int d = 0; d < Dim; ++d) {
-            x[d] = particles.position[d][i];
-        }
-        const analytic::State state = exact(x, simulation.time);
+    for (const analytic::State& state : exact.states) {
         double squared = 0;
         for (int d = 0; d < Dim; ++d) {
-            velocity[d][i] = state.velocity[d];
             squared += state.velocity[d] * state.velocity[d];
         }
-        fastest = std::max(fastest, squared);
-        pressure[i] = state.pressure;
+        deviation.maximum_speed_exact = std::max(deviation.maximum_speed_exact, std::sqrt(squared));
     }
-    std::vector<std::span<const double>> ours;
-    std::vector<std::span<const double>> theirs;
-    for (int d = 0; d < Dim; ++d) {
-        ours.emplace_back(particles.velocity[d], count);
-        theirs.emplace_back(velocity[d]);
+    if (exact.solution.kinetic_energy != nullptr) {
+        const double mass = simulation.particle_mass * static_cast<double>(simulation.particles.fluid_size());
+        deviation.energy_error = kinetic_energy(simulation) /
+                                     (mass * exact.solution.kinetic_energy(exact.values, simulation.time)) -
+                                 1;
     }
-    return {.time = simulation.time,
-            .velocity = vector_norms(ours, theirs, volume),
-            .pressure =
-                scalar_norms_up_to_a_constant({(*particles.find("pressure"))[0], count}, pressure, volume),
-            .maximum_speed = maximum_speed(simulation),
-            .maximum_speed_exact = std::sqrt(fastest),
-            .energy_error = kinetic_energy(simulation) / (simulation.density * simulation.box.volume() *
-                                                          solution.kinetic_energy(values, simulation.time)) -
-                            1};
+    return deviation;
+}
+
+std::vector<Profile> profiles_of(const SceneRecord& scene, const solver::Simulation<2>& simulation) {
+    const Exact<2> exact(scene, simulation);
+    const std::size_t count = simulation.particles.fluid_size();
+    const int direction = scene.flow->profile_direction;
+    const double* coordinate = simulation.particles.position[direction];
+    std::vector<Profile> profiles;
+    for (const std::string& name : scene.flow->fields) {
+        const solver::Field* field = simulation.particles.find(name);
+        if (field == nullptr) {
+            continue;
+        }
+        Profile profile{
+            name == "velocity" ? "velocity_x" : name, std::vector<double>(coordinate, coordinate + count),
+            std::vector<double>((*field)[0], (*field)[0] + count),
+            name == "velocity" ? exact.list([](const analytic::State& state) { return state.velocity[0]; })
+                               : exact_scalar(name, exact, simulation.time)};
+        profiles.push_back(std::move(profile));
+    }
+    return profiles;
 }
 
 Picture picture_of(const solver::Simulation<2>& simulation) {
     const auto& particles = simulation.particles;
     const auto copy = [&](const double* values) {
-        return std::vector<double>(values, values + particles.size());
+        return std::vector<double>(values, values + particles.fluid_size());
     };
     Picture picture{.time = simulation.time,
                     .x = copy(particles.position[0]),
@@ -174,7 +280,7 @@ Picture picture_of(const solver::Simulation<2>& simulation) {
                     .pressure = copy((*particles.find("pressure"))[0]),
                     .box = {simulation.box.low[0], simulation.box.high[0], simulation.box.low[1],
                             simulation.box.high[1]}};
-    for (std::size_t i = 0; i < particles.size(); ++i) {
+    for (std::size_t i = 0; i < particles.fluid_size(); ++i) {
         picture.speed[i] = std::hypot(particles.velocity[0][i], particles.velocity[1][i]);
     }
     return picture;
@@ -199,9 +305,9 @@ template <int Dim>
 EndState end_of(const solver::Simulation<Dim>& simulation) {
     const auto& particles = simulation.particles;
     const solver::Field& pressure = *particles.find("pressure");
-    EndState end{std::vector(Dim, std::vector<double>(particles.size())),
-                 std::vector<double>(particles.size())};
-    for (std::size_t k = 0; k < particles.size(); ++k) {
+    EndState end{std::vector(Dim, std::vector<double>(particles.fluid_size())),
+                 std::vector<double>(particles.fluid_size())};
+    for (std::size_t k = 0; k < particles.fluid_size(); ++k) {
         const int i = particles.id[k];
         for (int d = 0; d < Dim; ++d) {
             end.velocity[d][i] = particles.velocity[d][k];
@@ -249,6 +355,11 @@ void check_repeat(const RunRecord& first, const RunRecord& again) {
 
 } // namespace
 
+const Norms* Deviation::find(std::string_view name) const {
+    const auto found = std::ranges::find(errors, name, &FieldError::field);
+    return found == errors.end() ? nullptr : &found->norms;
+}
+
 template <int Dim>
 RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& scene,
                       const Progress& progress) {
@@ -259,7 +370,7 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     record.seed = scene.seed;
     record.h = simulation.smoothing_length;
     record.dx = simulation.particle_spacing;
-    record.particles = simulation.particles.size();
+    record.particles = simulation.particles.fluid_size();
     record.minimum_spacing = std::numeric_limits<double>::infinity();
     std::vector<double> time_steps;
     const Stock<Dim> start(simulation);
@@ -301,11 +412,14 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     record.maximum_speed_error = end.maximum_speed / end.maximum_speed_exact - 1;
     record.energy_error = end.energy_error;
     if (record.survived) {
-        record.errors = {{"velocity", end.velocity}, {"pressure", end.pressure}};
+        record.errors = end.errors;
     }
     if constexpr (Dim == 2) {
         if (scene.picture) {
             record.picture = picture_of(simulation);
+            if (scene.flow->profile_direction >= 0) {
+                record.profiles = profiles_of(scene, simulation);
+            }
         }
     }
     describe(simulation, record);

@@ -39,12 +39,23 @@ struct Budget {
 
 /// How far a run is from the exact solution at one time.
 struct Deviation {
-    double time = 0; ///< s
-    Norms velocity;
-    Norms pressure;
+    double time = 0;                ///< s
+    std::vector<FieldError> errors; ///< of what the case compares, in the order of compared_names()
     double maximum_speed = 0;       ///< m/s
     double maximum_speed_exact = 0; ///< m/s, at the particles
-    double energy_error = 0;        ///< kinetic energy over the exact one, minus 1
+    double energy_error =
+        0; ///< kinetic energy over the exact one, minus 1; NaN where the solution tells none
+
+    /// Norms of that name; nullptr where it is not compared.
+    const Norms* find(std::string_view name) const;
+};
+
+/// What was measured of one field at the particles, along one direction, beside the exact values.
+struct Profile {
+    std::string field;              ///< a vector's component by its name: velocity_x
+    std::vector<double> coordinate; ///< m
+    std::vector<double> ours;
+    std::vector<double> exact;
 };
 
 /// The particles of a plane run at one time.
@@ -77,6 +88,7 @@ struct RunRecord {
     Budget budget;
     std::vector<Deviation> history; ///< at every fortieth of the end time, and at the last step
     std::optional<Picture> picture; ///< at the last step, where the scene asks for it
+    std::vector<Profile> profiles;  ///< with the picture, where the case has a direction for them
 
     double setup_seconds = 0;
     double seconds = 0;        ///< stepping wall time, median over the repeats
@@ -111,8 +123,8 @@ template <int Dim>
 RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& scene,
                       const Progress& progress);
 
-/// Velocity (component by component) and pressure of the particles at the end of a run, in the order of their
-/// identity.
+/// Velocity (component by component) and pressure of the fluid particles at the end of a run, in the order of
+/// their identity.
 struct EndState {
     std::vector<std::vector<double>> velocity;
     std::vector<double> pressure;

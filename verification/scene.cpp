@@ -2,6 +2,7 @@
 
 #include "sphvv/analytic/solutions.hpp"
 #include "sphvv/solver/arrangements.hpp"
+#include "sphvv/solver/boundaries/shapes/signed_distance.hpp"
 #include "sphvv/verification/particle_sets.hpp"
 
 #include <algorithm>
@@ -27,15 +28,187 @@ std::string key_names(std::span<const Key> keys) {
 
 constexpr double largest_particle_count = 2e7; // about 20 GB with the neighbour lists of a 3-D scene
 
+/// Whether a row of wall particles lies on the walls.
+bool rows_on_walls(const SceneRecord& scene) {
+    return scene.case_settings.has("wall_method") && scene.case_settings.word("wall_method") != "mirror";
+}
+
+/// The rows of fluid particles in one direction: half a spacing from sides and surfaces, a whole one from
+/// walls that have a row of their own.
+struct Rows {
+    double first = 0;
+    double spacing = 0;
+    int count = 0;
+    bool low_row = false; ///< a row of wall particles at the low side
+    bool high_row = false;
+
+    double at(int k) const { return first + k * spacing; }
+};
+
+struct Layout {
+    double dx;
+    std::array<Rows, 3> rows;
+};
+
+std::vector<analytic::Boundary> boundaries_of(const SceneRecord& scene) {
+    return analytic::boundaries(analytic::solutions::find(scene.flow->solution), solution_values(scene));
+}
+
+bool is_wall(const analytic::Boundary& boundary) {
+    return boundary.kind != analytic::BoundaryKind::free_surface;
+}
+
+Layout layout_of(const SceneRecord& scene, const analytic::Domain& domain, int dimension) {
+    Layout layout{spacing_of(scene), {}};
+    std::array<std::array<bool, 2>, 3> row{};
+    for (const analytic::Boundary& boundary : boundaries_of(scene)) {
+        if (boundary.face && is_wall(boundary) && rows_on_walls(scene)) {
+            row[boundary.face->direction][boundary.face->high ? 1 : 0] = true;
+        }
+    }
+    for (int d = 0; d < dimension; ++d) {
+        const double spacings = (domain.high[d] - domain.low[d]) / layout.dx;
+        const double low = row[d][0] ? 1 : 0.5;
+        const double high = row[d][1] ? 1 : 0.5;
+        const double count = spacings - low - high + 1;
+        const long rows = std::lround(count);
+        if (rows < 1 || std::abs(count - static_cast<double>(rows)) > 1e-9 * spacings) {
+            throw UserError(std::string(scene.flow->name) + " at n = " + std::to_string(scene.n) +
+                            ": a side of " + shortest(domain.high[d] - domain.low[d]) +
+                            " m is no whole number of rows " + shortest(layout.dx) +
+                            " m apart; give another n, length or wall_method");
+        }
+        const double spacing =
+            (domain.high[d] - domain.low[d]) / (static_cast<double>(rows) - 1 + low + high);
+        layout.rows[d] = {domain.low[d] + low * spacing, spacing, static_cast<int>(rows), row[d][0],
+                          row[d][1]};
+    }
+    return layout;
+}
+
+/// The box of the domain, with room above a free surface.
 template <int Dim>
-solver::Box<Dim> box_of(const analytic::Domain& domain) {
+solver::Box<Dim> box_of(const SceneRecord& scene, const analytic::Domain& domain) {
     solver::Box<Dim> box;
     for (int d = 0; d < Dim; ++d) {
         box.low[d] = domain.low[d];
         box.high[d] = domain.high[d];
         box.periodic[d] = domain.periodic[d];
     }
+    for (const analytic::Boundary& boundary : boundaries_of(scene)) {
+        if (boundary.face && !is_wall(boundary)) {
+            const int d = boundary.face->direction;
+            (boundary.face->high ? box.high[d] : box.low[d]) +=
+                (boundary.face->high ? 1 : -1) * (domain.high[d] - domain.low[d]);
+        }
+    }
     return box;
+}
+
+template <int Dim>
+using Points = std::array<std::vector<double>, Dim>;
+
+/// Every point of a grid, direction 0 fastest.
+template <int Dim>
+Points<Dim> grid(const std::array<std::vector<double>, Dim>& along) {
+    Points<Dim> points;
+    std::size_t count = 1;
+    for (const auto& axis : along) {
+        count *= axis.size();
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+        std::size_t rest = k;
+        for (int d = 0; d < Dim; ++d) {
+            points[d].push_back(along[d][rest % along[d].size()]);
+            rest /= along[d].size();
+        }
+    }
+    return points;
+}
+
+template <int Dim>
+std::array<std::vector<double>, Dim> fluid_axes(const Layout& layout) {
+    std::array<std::vector<double>, Dim> along;
+    for (int d = 0; d < Dim; ++d) {
+        for (int k = 0; k < layout.rows[d].count; ++k) {
+            along[d].push_back(layout.rows[d].at(k));
+        }
+    }
+    return along;
+}
+
+/// Wall particles on the sides that have a row: beside the fluid's, and in the corners, each in one row.
+template <int Dim>
+std::vector<solver::WallParticle<Dim>> wall_rows(const SceneRecord& scene, const Layout& layout,
+                                                 const analytic::Domain& domain) {
+    std::vector<solver::WallParticle<Dim>> particles;
+    int wall = 0;
+    for (const analytic::Boundary& boundary : boundaries_of(scene)) {
+        if (!is_wall(boundary)) {
+            continue;
+        }
+        if (boundary.face && rows_on_walls(scene)) {
+            auto along = fluid_axes<Dim>(layout);
+            const int across = boundary.face->direction;
+            for (int d = 0; d < across; ++d) {
+                if (layout.rows[d].low_row) {
+                    along[d].insert(along[d].begin(), domain.low[d]);
+                }
+                if (layout.rows[d].high_row) {
+                    along[d].push_back(domain.high[d]);
+                }
+            }
+            along[across] = {boundary.face->high ? domain.high[across] : domain.low[across]};
+            const Points<Dim> points = grid<Dim>(along);
+            for (std::size_t k = 0; k < points[0].size(); ++k) {
+                solver::Vector<Dim> x;
+                for (int d = 0; d < Dim; ++d) {
+                    x[d] = points[d][k];
+                }
+                particles.push_back({wall, x});
+            }
+        }
+        ++wall;
+    }
+    return particles;
+}
+
+template <int Dim>
+analytic::Vector analytic_point(const solver::Vector<Dim>& x) {
+    analytic::Vector point{};
+    std::copy_n(x.data(), Dim, point.begin());
+    return point;
+}
+
+template <int Dim>
+solver::Vector<Dim> solver_vector(const analytic::Vector& v) {
+    solver::Vector<Dim> result;
+    std::copy_n(v.begin(), Dim, result.data());
+    return result;
+}
+
+/// The walls of the solution, in its order.
+template <int Dim>
+std::vector<solver::Wall<Dim>> walls_of(const SceneRecord& scene) {
+    std::vector<solver::Wall<Dim>> walls;
+    const double step = 1e-6 * scene.case_settings.number(scene.flow->reference_length);
+    for (const analytic::Boundary& boundary : boundaries_of(scene)) {
+        if (!is_wall(boundary)) {
+            continue;
+        }
+        const auto distance = [boundary](const solver::Vector<Dim>& x) {
+            return boundary.distance(analytic_point<Dim>(x));
+        };
+        walls.push_back({.name = std::string(boundary.name),
+                         .slip = boundary.kind == analytic::BoundaryKind::no_slip ? solver::Slip::no_slip
+                                                                                  : solver::Slip::free_slip,
+                         .distance = distance,
+                         .normal = solver::shapes::gradient_of<Dim>(distance, step),
+                         .velocity = [boundary](const solver::Vector<Dim>& x, double t) {
+                             return solver_vector<Dim>(boundary.velocity(analytic_point<Dim>(x), t));
+                         }});
+    }
+    return walls;
 }
 
 int tile_of(int dimension) {
@@ -75,6 +248,12 @@ analytic::Values solution_values(const SceneRecord& scene) {
     analytic::Values values;
     for (const analytic::Parameter& p : analytic::solutions::find(scene.flow->solution).parameters) {
         values.emplace(p.name, scene.case_settings.number(p.name));
+    }
+    if (scene.flow->columns > 0) {
+        values["length"] = scene.case_settings.integer("columns") * spacing_of(scene);
+    }
+    if (scene.flow->hooks.values) {
+        scene.flow->hooks.values(scene, values);
     }
     return values;
 }
@@ -142,20 +321,28 @@ SceneRecord resolve_scene(const Case& flow, const Variant& variant, const solver
 void check_scene(const SceneRecord& scene) {
     const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
     const analytic::Domain domain = solution.domain(solution_values(scene));
-    const double length = scene.case_settings.number(scene.flow->reference_length);
-    const double dx = length / scene.n;
+    const Layout layout = layout_of(scene, domain, solution.dimension);
     const solver::Kernel& kernel = solver::kernels::find(scene.scheme_settings.word("kernel"));
-    const double support = kernel.support * scene.scheme_settings.number("h_over_dx") * dx;
+    const double support = kernel.support * scene.scheme_settings.number("h_over_dx") * layout.dx;
     const std::string where = "n = " + std::to_string(scene.n) + " for " + std::string(scene.scheme->name) +
                               " on " + std::string(scene.flow->name);
     double particles = 1;
     for (int d = 0; d < solution.dimension; ++d) {
         const double side = domain.high[d] - domain.low[d];
-        particles *= side / dx;
-        if (side < 2 * support * (1 - 1e-12)) {
+        particles *= side / layout.dx;
+        if (scene.flow->columns > 0 && d == 0 && side < 2 * support * (1 - 1e-12)) {
             throw UserError(
-                where + ": a periodic box must hold two kernel supports of " + shortest(support / dx) +
-                " dx each; give n >= " + shortest(std::ceil(2 * support / side * scene.n - 1e-9)));
+                where + ": a periodic box must hold two kernel supports of " + shortest(support / layout.dx) +
+                " dx each; give columns >= " + shortest(std::ceil(2 * support / layout.dx - 1e-9)));
+        }
+        // Beyond a wall as much is reflected as a support reaches.
+        const double needed = domain.periodic[d] ? 2 * support : support;
+        if (side < needed * (1 - 1e-12)) {
+            throw UserError(where +
+                            (domain.periodic[d] ? ": a periodic box must hold two kernel supports of "
+                                                : ": a box between walls must hold a kernel support of ") +
+                            shortest(support / layout.dx) + (domain.periodic[d] ? " dx each" : " dx") +
+                            "; give n >= " + shortest(std::ceil(needed / side * scene.n - 1e-9)));
         }
     }
     if (scene.case_settings.word("arrangement") == "settled") {
@@ -167,59 +354,150 @@ void check_scene(const SceneRecord& scene) {
     }
 }
 
-template <int Dim>
-solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
-    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
-    const analytic::Values values = solution_values(scene);
-    const analytic::Medium medium = solution.medium(values);
-    const analytic::Evaluator exact = solution.bind(values);
-    const solver::Box<Dim> box = box_of<Dim>(solution.domain(values));
-    const double dx = scene.case_settings.number(scene.flow->reference_length) / scene.n;
-    const double h = scene.scheme_settings.number("h_over_dx") * dx;
-    const solver::Kernel& kernel = solver::kernels::find(scene.scheme_settings.word("kernel"));
-    check_scene(scene);
+namespace {
 
+template <int Dim>
+Points<Dim> fluid_points(const SceneRecord& scene, const Layout& layout, const analytic::Domain& domain) {
     const std::string& arrangement = scene.case_settings.word("arrangement");
-    auto points = arrangement == "settled" ? settled_points<Dim>(box, scene) : solver::lattice<Dim>(box, dx);
+    Points<Dim> points = arrangement == "settled" ? settled_points<Dim>(box_of<Dim>(scene, domain), scene)
+                                                  : grid<Dim>(fluid_axes<Dim>(layout));
     if (arrangement == "jittered") {
-        solver::jitter<Dim>(points, scene.case_settings.number("jitter") * dx, scene.seed);
+        solver::jitter<Dim>(points, scene.case_settings.number("jitter") * layout.dx, scene.seed);
     }
-    solver::Simulation<Dim> simulation(box, points[0].size());
-    simulation.settings = scene.scheme_settings;
-    simulation.kernel = &kernel;
-    simulation.particle_spacing = dx;
-    simulation.smoothing_length = h;
-    simulation.density = medium.density;
-    simulation.kinematic_viscosity = medium.kinematic_viscosity;
-    simulation.reference_speed = medium.maximum_speed;
-    simulation.particle_mass = medium.density * box.volume() / static_cast<double>(points[0].size());
-    simulation.end_time = scene.case_settings.number("end_time");
-    simulation.survival = {
-        .kinetic_energy = scene.case_settings.number("maximum_energy") * medium.density * box.volume() *
-                          solution.kinetic_energy(values, 0),
-        .minimum_spacing = scene.case_settings.number("minimum_spacing") * dx,
-        .kinetic_energy_reason =
-            scene.case_settings.text("maximum_energy") + " times its start value in an undriven flow",
-        .minimum_spacing_reason = "arrangement lost",
-    };
-    solver::Particles<Dim>& particles = simulation.particles;
+    if constexpr (Dim == 2) {
+        if (scene.flow->hooks.arrange) {
+            scene.flow->hooks.arrange(scene, points);
+        }
+    }
+    return points;
+}
+
+/// m^dim that a fluid particle stands for.
+double particle_volume(const Layout& layout, int dimension) {
+    double volume = 1;
+    for (int d = 0; d < dimension; ++d) {
+        volume *= layout.rows[d].spacing;
+    }
+    return volume;
+}
+
+/// Nothing feeds a flow that no force drives and no wall drags: it keeps to the energy that it starts with.
+solver::SurvivalBounds bounds_of(const SceneRecord& scene, const analytic::Values& values, double volume,
+                                 double speed, double dx) {
+    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
+    const analytic::Medium medium = solution.medium(values);
+    const bool driven = !boundaries_of(scene).empty() || medium.body_force != analytic::Vector{};
+    const double energy = driven ? 0.5 * speed * speed : solution.kinetic_energy(values, 0);
+    return {.kinetic_energy = scene.case_settings.number("maximum_energy") * medium.density * volume * energy,
+            .minimum_spacing = scene.case_settings.number("minimum_spacing") * dx,
+            .kinetic_energy_reason =
+                scene.case_settings.text("maximum_energy") +
+                (driven ? " times that of all fluid at the largest speed that is expected"
+                        : " times its start value in an undriven flow"),
+            .minimum_spacing_reason = "arrangement lost"};
+}
+
+template <int Dim>
+void set_start(const SceneRecord& scene, const analytic::Evaluator& exact, solver::Simulation<Dim>& s) {
+    solver::Particles<Dim>& particles = s.particles;
     solver::Field& pressure = particles.field("pressure", 1, solver::Lifetime::state, "scene");
-    for (int d = 0; d < Dim; ++d) {
-        particles.position.components[d] = points[d];
-    }
-    solver::wrap_positions(simulation); // a jittered particle may have left the box
     for (std::size_t i = 0; i < particles.size(); ++i) {
-        analytic::Vector x{};
+        solver::Vector<Dim> x;
         for (int d = 0; d < Dim; ++d) {
             x[d] = particles.position[d][i];
         }
-        const analytic::State state = exact(x, 0);
+        analytic::State state = exact(analytic_point<Dim>(x), 0);
+        const bool of_wall = i >= particles.fluid_size();
+        const auto velocity = of_wall
+                                  ? s.walls[s.wall_particles[i - particles.fluid_size()].wall].velocity(x, 0)
+                                  : solver_vector<Dim>(state.velocity);
         for (int d = 0; d < Dim; ++d) {
-            particles.velocity[d][i] = state.velocity[d];
+            particles.velocity[d][i] = scene.flow->starts_at_rest && !of_wall ? 0 : velocity[d];
         }
-        pressure[0][i] = state.pressure;
+        pressure[0][i] = std::isfinite(state.pressure) ? state.pressure : 0;
+    }
+}
+
+} // namespace
+
+double spacing_of(const SceneRecord& scene) {
+    // Rows of the directions that are not periodic do not depend on the length along the others.
+    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
+    const double length = scene.case_settings.number(scene.flow->reference_length);
+    std::array<int, 3> rows{};
+    for (const analytic::Boundary& boundary :
+         analytic::boundaries(solution, analytic::resolve(solution, {}))) {
+        if (boundary.face && is_wall(boundary) && rows_on_walls(scene)) {
+            ++rows[boundary.face->direction];
+        }
+    }
+    const bool one_sided = std::ranges::find(rows, 1) != rows.end();
+    return length / (scene.n + (one_sided ? 0.5 : 0));
+}
+
+template <int Dim>
+solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
+    check_scene(scene);
+    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
+    const analytic::Values values = solution_values(scene);
+    const analytic::Medium medium = solution.medium(values);
+    const analytic::Domain domain = solution.domain(values);
+    const Layout layout = layout_of(scene, domain, Dim);
+    const auto& hooks = scene.flow->hooks;
+
+    const Points<Dim> points = fluid_points<Dim>(scene, layout, domain);
+    const auto wall_particles = wall_rows<Dim>(scene, layout, domain);
+    const std::size_t fluid = points[0].size();
+    solver::Simulation<Dim> simulation(box_of<Dim>(scene, domain), fluid + wall_particles.size(),
+                                       wall_particles.size());
+    simulation.settings = scene.scheme_settings;
+    simulation.kernel = &solver::kernels::find(scene.scheme_settings.word("kernel"));
+    simulation.particle_spacing = layout.dx;
+    simulation.smoothing_length = scene.scheme_settings.number("h_over_dx") * layout.dx;
+    simulation.density = medium.density;
+    simulation.kinematic_viscosity = medium.kinematic_viscosity;
+    simulation.reference_speed =
+        hooks.reference_speed ? hooks.reference_speed(scene, values) : medium.maximum_speed;
+    for (int d = 0; d < Dim; ++d) {
+        simulation.body_force[d] = medium.body_force[d];
+    }
+    const double volume = particle_volume(layout, Dim);
+    simulation.particle_mass = medium.density * volume;
+    simulation.end_time = scene.case_settings.number("end_time");
+    simulation.survival =
+        bounds_of(scene, values, volume * static_cast<double>(fluid), simulation.reference_speed, layout.dx);
+    simulation.walls = walls_of<Dim>(scene);
+    simulation.wall_particles = wall_particles;
+    if (scene.case_settings.has("wall_method") && scene.case_settings.word("wall_method") == "dummy") {
+        simulation.wall_method = solver::WallMethod::dummy;
+    }
+    if (scene.case_settings.has("surface_detector")) {
+        const solver::Detector& detector =
+            solver::free_surface::find(scene.case_settings.word("surface_detector"));
+        simulation.free_surface = solver::FreeSurface{
+            &detector,
+            detector.threshold(Dim, simulation.kernel->support * scene.scheme_settings.number("h_over_dx"))};
+    }
+    for (int d = 0; d < Dim; ++d) {
+        auto& x = simulation.particles.position.components[d];
+        x = points[d];
+        for (const auto& particle : wall_particles) {
+            x.push_back(particle.position[d]);
+        }
+    }
+    solver::wrap_positions(simulation); // a jittered particle may have left the box
+    set_start(scene, solution.bind(values), simulation);
+    if constexpr (Dim == 2) {
+        if (hooks.prepare) {
+            hooks.prepare(scene, simulation);
+        }
     }
     scene.scheme->assemble(simulation);
+    if constexpr (Dim == 2) {
+        if (hooks.complete) {
+            hooks.complete(scene, simulation);
+        }
+    }
     return simulation;
 }
 

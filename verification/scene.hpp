@@ -48,14 +48,21 @@ SceneRecord resolve_scene(const Case& flow, const Variant& variant, const solver
 /// The parameters of the scene's exact solution.
 analytic::Values solution_values(const SceneRecord& scene);
 
+/// dx (m): the reference length over n, or over n + 1/2 where one of two opposite sides has a row of wall
+/// particles, which takes half a spacing more than the half that other rows are from theirs.
+double spacing_of(const SceneRecord& scene);
+
 /// 2 or 3.
 int dimension(const SceneRecord& scene);
 
 /// Throws UserError if n is too small for a periodic box (which must hold two kernel supports, so that no
-/// particle meets two images of another) or too large for this program.
+/// particle meets two images of another) or between walls (one support), if the rows do not fill the domain,
+/// or if n is too large for this program.
 void check_scene(const SceneRecord& scene);
 
-/// The scene's particles at t = 0, with velocity and pressure of the exact solution, and the scheme's stages.
+/// The scene's particles at t = 0 with velocity and pressure of the exact solution, its walls and free
+/// surface, and the scheme's stages. Fluid particles are half a spacing from a surface and from a wall
+/// without wall particles.
 /// Throws as check_scene.
 template <int Dim>
 solver::Simulation<Dim> build_scene(const SceneRecord& scene);

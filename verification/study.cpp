@@ -12,7 +12,6 @@ namespace sphvv::verification {
 namespace {
 
 constexpr int seeds_of_random_starts = 5; // verification.md §3: at least five
-const std::vector<std::string> compared_fields{"velocity", "pressure"};
 
 std::string group_label(const LadderRequest& request, const SceneRecord& scene) {
     const std::string leading(request.flow->leading_key);
@@ -163,6 +162,14 @@ void judge_order(FieldStudy& study, const std::vector<Rung>& rungs) {
         study.reason = count_of(study.samples.size(), "rung") + ": errors only, an order verdict needs 4";
         return;
     }
+    const auto is_zero = [](const Rung& rung) {
+        return std::ranges::find(rung.errors, 0.) != rung.errors.end();
+    };
+    if (std::ranges::any_of(rungs, is_zero)) {
+        study.verdict = "NONE";
+        study.reason = "an error is zero to the last bit: no order";
+        return;
+    }
     if (!study.expectation) {
         study.verdict = "NONE";
         study.reason = "no order is derived or published for this field of this scheme: observed only";
@@ -255,9 +262,9 @@ void check_time_ladder(const LadderRequest& request) {
     }
 }
 
-std::vector<Front> fronts_of(const std::vector<FieldStudy>& studies) {
+std::vector<Front> fronts_of(const Case& flow, const std::vector<FieldStudy>& studies) {
     std::vector<Front> fronts;
-    for (const std::string& field : compared_fields) {
+    for (const std::string& field : compared_names(flow)) {
         for (const std::string cost : {"seconds", "work"}) {
             Front front{field, cost, {}, {}, {}};
             for (const FieldStudy& study : studies) {
@@ -318,6 +325,30 @@ std::vector<SceneRecord> plan(const LadderRequest& request) {
     return scenes;
 }
 
+namespace {
+
+/// Ladders in time hold velocity and pressure against a finer run.
+std::vector<std::string> judged_fields(const Case& flow, Axis axis) {
+    return axis == Axis::time ? std::vector<std::string>{"velocity", "pressure"} : compared_names(flow);
+}
+
+/// Not every scheme has every field: an incompressible one has no density. Of runs that all died nothing is
+/// known.
+bool is_compared(const SceneRecord& scene, std::span<const RunRecord> runs, const std::string& field) {
+    bool any_survived = false;
+    for (const RunRecord& run : runs) {
+        if (run.scheme == scene.label && run.survived) {
+            any_survived = true;
+            if (error_of(run, field) != nullptr) {
+                return true;
+            }
+        }
+    }
+    return !any_survived;
+}
+
+} // namespace
+
 std::vector<FieldStudy> judge_runs(std::span<const SceneRecord> scenes, std::span<const RunRecord> runs,
                                    Axis axis) {
     std::vector<FieldStudy> studies;
@@ -326,7 +357,10 @@ std::vector<FieldStudy> judge_runs(std::span<const SceneRecord> scenes, std::spa
         if (!judged.insert(scene.label).second) {
             continue;
         }
-        for (const std::string& field : compared_fields) {
+        for (const std::string& field : judged_fields(*scene.flow, axis)) {
+            if (!is_compared(scene, runs, field)) {
+                continue;
+            }
             std::optional<Expectation> expectation;
             if (axis == Axis::time) {
                 expectation = expectation_in_time(*scene.scheme, field, scene.scheme_settings);
@@ -412,7 +446,7 @@ LadderResult run_ladder(const LadderRequest& request, const LadderProgress& prog
         keep(run_scene(scene, tell(scene)));
     }
     result.studies = judge_runs(scenes, result.runs, Axis::space);
-    result.fronts = fronts_of(result.studies);
+    result.fronts = fronts_of(*request.flow, result.studies);
     for (const Claim& claim : request.flow->claims) {
         if (applies(claim.where, scenes.front().case_settings, scenes.front().scheme_settings)) {
             if (const auto finding = claim.measure(result.runs)) {
