@@ -190,7 +190,14 @@ Vector<Dim> Simulation<Dim>::wall_pressure_gradient() const {
 template <int Dim>
 void Simulation<Dim>::fill_walls_forced(Field& field, double dt) const {
     fill_walls(field, Parity::velocity);
-    images.fill(field, Parity::velocity, dt / density * wall_pressure_gradient());
+    const Vector<Dim> share = dt / density * wall_pressure_gradient();
+    // The pressure takes it off again, of wall particles as of the fluid.
+    for (std::size_t i = particles.fluid_size(); i < particles.size(); ++i) {
+        for (int d = 0; d < Dim; ++d) {
+            field[d][i] += share[d];
+        }
+    }
+    images.fill(field, Parity::velocity, share);
 }
 
 template <int Dim>

@@ -60,6 +60,10 @@ void add_boundary_keys(const Case& c, std::vector<Key>& keys) {
     if (has_free_surface(c)) {
         keys.push_back(Key::word("surface_detector", "covered_ball", free_surface_detectors(),
                                  "what tells the particles at the free surface, where a scheme asks"));
+        keys.push_back(Key::word("surface_row", "below", {"below", "on"},
+                                 "the uppermost row of particles: below, half a spacing, so that the "
+                                 "particles fill the domain; on, on the surface, as depths are counted in "
+                                 "Issa's thesis"));
     }
 }
 

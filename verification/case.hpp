@@ -93,15 +93,15 @@ struct Measure {
 /// What a case does differently from the scene that follows from its solution. Every hook may be left out.
 struct SceneHooks {
     /// Changes parameters of the solution that follow from other settings (a sound speed, from the scheme's).
-    std::function<void(const SceneRecord&, analytic::Values&)> values;
+    std::function<void(const SceneRecord&, analytic::Values&)> values{};
     /// m/s, the largest speed that the scene expects, where the solution's own is none to go by.
-    std::function<double(const SceneRecord&, const analytic::Values&)> reference_speed;
+    std::function<double(const SceneRecord&, const analytic::Values&)> reference_speed{};
     /// Moves, adds or takes away particles of the lattice; component by component, m.
-    std::function<void(const SceneRecord&, std::array<std::vector<double>, 2>&)> arrange;
+    std::function<void(const SceneRecord&, std::array<std::vector<double>, 2>&)> arrange{};
     /// Sets what the scheme is to be assembled with, after particles, walls and start values.
-    std::function<void(const SceneRecord&, solver::Simulation<2>&)> prepare;
+    std::function<void(const SceneRecord&, solver::Simulation<2>&)> prepare{};
     /// Adds stages and fields after the scheme's.
-    std::function<void(const SceneRecord&, solver::Simulation<2>&)> complete;
+    std::function<void(const SceneRecord&, solver::Simulation<2>&)> complete{};
 };
 
 /// A flow that starts from, and is held against, an exact solution of analytic/: periodic, or between the

@@ -33,8 +33,7 @@ bool rows_on_walls(const SceneRecord& scene) {
     return scene.case_settings.has("wall_method") && scene.case_settings.word("wall_method") != "mirror";
 }
 
-/// The rows of fluid particles in one direction: half a spacing from sides and surfaces, a whole one from
-/// walls that have a row of their own.
+/// The rows of fluid particles in one direction.
 struct Rows {
     double first = 0;
     double spacing = 0;
@@ -45,6 +44,33 @@ struct Rows {
     double at(int k) const { return first + k * spacing; }
 };
 
+/// From the last row of the fluid to either side of the domain, in spacings: half a one at a periodic side, a
+/// surface and a wall; a whole one at a wall that has a row of its own; none at a surface on which the
+/// uppermost row is to lie.
+using Ends = std::array<std::array<double, 2>, 3>;
+
+bool is_wall(const analytic::Boundary& boundary) {
+    return boundary.kind != analytic::BoundaryKind::free_surface;
+}
+
+/// They do not depend on the values of the parameters.
+Ends ends_of(const SceneRecord& scene) {
+    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
+    Ends ends{{{0.5, 0.5}, {0.5, 0.5}, {0.5, 0.5}}};
+    for (const analytic::Boundary& boundary :
+         analytic::boundaries(solution, analytic::resolve(solution, {}))) {
+        if (boundary.face) {
+            double& end = ends[boundary.face->direction][boundary.face->high ? 1 : 0];
+            if (is_wall(boundary)) {
+                end = rows_on_walls(scene) ? 1 : 0.5;
+            } else {
+                end = scene.case_settings.word("surface_row") == "on" ? 0 : 0.5;
+            }
+        }
+    }
+    return ends;
+}
+
 struct Layout {
     double dx;
     std::array<Rows, 3> rows;
@@ -54,34 +80,22 @@ std::vector<analytic::Boundary> boundaries_of(const SceneRecord& scene) {
     return analytic::boundaries(analytic::solutions::find(scene.flow->solution), solution_values(scene));
 }
 
-bool is_wall(const analytic::Boundary& boundary) {
-    return boundary.kind != analytic::BoundaryKind::free_surface;
-}
-
 Layout layout_of(const SceneRecord& scene, const analytic::Domain& domain, int dimension) {
     Layout layout{spacing_of(scene), {}};
-    std::array<std::array<bool, 2>, 3> row{};
-    for (const analytic::Boundary& boundary : boundaries_of(scene)) {
-        if (boundary.face && is_wall(boundary) && rows_on_walls(scene)) {
-            row[boundary.face->direction][boundary.face->high ? 1 : 0] = true;
-        }
-    }
+    const Ends ends = ends_of(scene);
     for (int d = 0; d < dimension; ++d) {
-        const double spacings = (domain.high[d] - domain.low[d]) / layout.dx;
-        const double low = row[d][0] ? 1 : 0.5;
-        const double high = row[d][1] ? 1 : 0.5;
-        const double count = spacings - low - high + 1;
+        const double side = domain.high[d] - domain.low[d];
+        const auto [low, high] = ends[d];
+        const double count = side / layout.dx - low - high + 1;
         const long rows = std::lround(count);
-        if (rows < 1 || std::abs(count - static_cast<double>(rows)) > 1e-9 * spacings) {
+        if (rows < 1 || std::abs(count - static_cast<double>(rows)) > 1e-9 * side / layout.dx) {
             throw UserError(std::string(scene.flow->name) + " at n = " + std::to_string(scene.n) +
-                            ": a side of " + shortest(domain.high[d] - domain.low[d]) +
-                            " m is no whole number of rows " + shortest(layout.dx) +
-                            " m apart; give another n, length or wall_method");
+                            ": a side of " + shortest(side) + " m is no whole number of rows " +
+                            shortest(layout.dx) + " m apart; give another n, length or wall_method");
         }
-        const double spacing =
-            (domain.high[d] - domain.low[d]) / (static_cast<double>(rows) - 1 + low + high);
-        layout.rows[d] = {domain.low[d] + low * spacing, spacing, static_cast<int>(rows), row[d][0],
-                          row[d][1]};
+        const double spacing = side / (static_cast<double>(rows) - 1 + low + high);
+        layout.rows[d] = {domain.low[d] + low * spacing, spacing, static_cast<int>(rows), low == 1,
+                          high == 1};
     }
     return layout;
 }
@@ -345,6 +359,11 @@ void check_scene(const SceneRecord& scene) {
                             "; give n >= " + shortest(std::ceil(needed / side * scene.n - 1e-9)));
         }
     }
+    const auto boundaries = boundaries_of(scene);
+    if (rows_on_walls(scene) &&
+        std::ranges::any_of(boundaries, [](const auto& b) { return is_wall(b) && !b.face; })) {
+        throw UserError(where + ": wall particles lie along plane walls only; give wall_method=mirror");
+    }
     if (scene.case_settings.word("arrangement") == "settled") {
         check_settled(scene, domain, solution.dimension, where);
     }
@@ -421,18 +440,11 @@ void set_start(const SceneRecord& scene, const analytic::Evaluator& exact, solve
 } // namespace
 
 double spacing_of(const SceneRecord& scene) {
-    // Rows of the directions that are not periodic do not depend on the length along the others.
-    const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
-    const double length = scene.case_settings.number(scene.flow->reference_length);
-    std::array<int, 3> rows{};
-    for (const analytic::Boundary& boundary :
-         analytic::boundaries(solution, analytic::resolve(solution, {}))) {
-        if (boundary.face && is_wall(boundary) && rows_on_walls(scene)) {
-            ++rows[boundary.face->direction];
-        }
+    double excess = 0;
+    for (const auto& [low, high] : ends_of(scene)) {
+        excess = low + high != 1 && low + high != 2 ? low + high - 1 : excess;
     }
-    const bool one_sided = std::ranges::find(rows, 1) != rows.end();
-    return length / (scene.n + (one_sided ? 0.5 : 0));
+    return scene.case_settings.number(scene.flow->reference_length) / (scene.n + excess);
 }
 
 template <int Dim>

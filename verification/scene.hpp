@@ -48,8 +48,8 @@ SceneRecord resolve_scene(const Case& flow, const Variant& variant, const solver
 /// The parameters of the scene's exact solution.
 analytic::Values solution_values(const SceneRecord& scene);
 
-/// dx (m): the reference length over n, or over n + 1/2 where one of two opposite sides has a row of wall
-/// particles, which takes half a spacing more than the half that other rows are from theirs.
+/// dx (m): the reference length over n. Where rows lie differently at two opposite sides, so that n spacings
+/// do not fit, over n + 1/2 (a row of wall particles at one of them) or n - 1/2 (a row on the free surface).
 double spacing_of(const SceneRecord& scene);
 
 /// 2 or 3.

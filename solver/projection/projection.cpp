@@ -46,10 +46,11 @@ Gradient gradient_of(const Settings& settings) {
 }
 
 Viscosity viscosity_of(const Settings& settings) {
-    if (settings.word("viscosity") == "monaghan_cleary") {
+    const std::string& word = settings.word("viscosity");
+    if (word == "monaghan_cleary") {
         return Viscosity::monaghan_cleary;
     }
-    return settings.word("laplacian") == "schwaiger" ? Viscosity::schwaiger : Viscosity::morris;
+    return word == "laplacian" && settings.word("laplacian") == "schwaiger" ? Viscosity::schwaiger : Viscosity::morris;
 }
 
 template <int Dim>
@@ -176,8 +177,9 @@ std::vector<Key> keys(const Defaults& defaults) {
     return joined(
         common_keys(defaults.kernel, defaults.h_over_dx),
         {Key::word("laplacian", "morris", {"morris", "schwaiger"}, "Laplacian of the pressure: LM or LS"),
-         Key::word("viscosity", "laplacian", {"laplacian", "monaghan_cleary"},
-                   "the same Laplacian, or Monaghan-Cleary's form along the line of the pair"),
+         Key::word("viscosity", "laplacian", {"laplacian", "morris", "monaghan_cleary"},
+                   "the same Laplacian, LM, or Monaghan-Cleary's form along the line of the pair. LS has no "
+                   "condition of zero stress at a free surface, the symmetric sums of the others have"),
          Key::word("gradient", std::string(defaults.gradient), {"normalised", "plain", "symmetric"},
                    "gradient and divergence: renormalised G-, G-, or G+ with its adjoint, the divergence of "
                    "G-"),
@@ -310,9 +312,9 @@ void write_density_equations(Simulation<Dim>& s, Projection<Dim>& p, double tau_
 }
 
 Conserves conserves(const Settings& settings) {
-    const bool central = settings.word("viscosity") == "monaghan_cleary";
+    const bool central = viscosity_of(settings) == Viscosity::monaghan_cleary;
     const bool antisymmetric =
-        settings.word("gradient") == "symmetric" && (central || settings.word("laplacian") == "morris");
+        settings.word("gradient") == "symmetric" && viscosity_of(settings) != Viscosity::schwaiger;
     return {.momentum = antisymmetric, .angular_momentum = antisymmetric && central, .energy = false};
 }
 

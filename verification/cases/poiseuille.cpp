@@ -1,4 +1,5 @@
 #include "sphvv/verification/cases.hpp"
+#include "sphvv/verification/wall_orders.hpp"
 
 namespace sphvv::verification::cases {
 
@@ -7,20 +8,16 @@ const Case& poiseuille() {
         .name = "poiseuille",
         .summary = "plane channel between two walls at rest, driven by a body force from rest",
         .equations = "incompressible Navier-Stokes in 2-D with a body force",
-        .source = "Schlichting 1979 ch. V; transients after Carslaw & Jaeger 1959; Morris et al. 1997",
+        .source =
+            "Schlichting 1979 ch. V; transients: Carslaw & Jaeger 1959 ch. III; as a test of SPH: Morris "
+            "et al. 1997",
         .solution = "poiseuille",
         .reference_length = "width",
         .leading_key = "re",
         .end_time = 1,
-        .expectations = {},
+        .expectations = wall_orders::expectations(),
         .claims = {},
-        .studies = {{.name = "poiseuille/walls",
-                     .tier = Tier::quick,
-                     .schemes = {"wcsph", "isph_dfs", "isph_mls"},
-                     .settings = {{"re", "10"}},
-                     .ladder = {10, 14, 20, 28, 40},
-                     .cost = "10 s",
-                     .picture_at = 40}},
+        .studies = wall_orders::studies("poiseuille"),
         .fields = {"velocity"},
         .columns = 16,
         .profile_direction = 1,
