@@ -137,6 +137,7 @@ void wrap_positions(Simulation<Dim>& simulation) {
     const Box<Dim>& box = simulation.box;
     Particles<Dim>& particles = simulation.particles;
     const int count = static_cast<int>(particles.size());
+    const int fluid = static_cast<int>(particles.fluid_size()); // wall particles may lie behind a side
     int lost = count;
 #pragma omp parallel for schedule(static) reduction(min : lost)
     for (int i = 0; i < count; ++i) {
@@ -150,7 +151,7 @@ void wrap_positions(Simulation<Dim>& simulation) {
                 // Rounding may leave x on, or an ulp outside, the high side.
                 x = x >= box.high[d] ? box.low[d] : x;
             }
-            if (!(x >= box.low[d] && x <= box.high[d])) {
+            if (!(x >= box.low[d] && x <= box.high[d]) && i < fluid) {
                 lost = std::min(lost, i);
             }
         }
@@ -235,7 +236,7 @@ void make_images_and_list(Simulation<Dim>& simulation, double skin) {
     const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
     if (!simulation.walls.empty() && simulation.wall_method == WallMethod::mirror) {
         simulation.images.mirror(simulation.walls, radius, simulation.time, particles);
-    } else if (!simulation.walls.empty()) {
+    } else if (!simulation.walls.empty() && simulation.wall_method == WallMethod::dummy) {
         simulation.images.stack(simulation.walls, simulation.wall_particles, simulation.particle_spacing,
                                 radius, simulation.time, particles);
     }

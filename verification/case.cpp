@@ -52,10 +52,11 @@ bool has_boundary(const Case& c, bool surface) {
 
 void add_boundary_keys(const Case& c, std::vector<Key>& keys) {
     if (has_walls(c)) {
-        keys.push_back(Key::word("wall_method", "mirror", {"mirror", "mirror_row", "dummy"},
+        keys.push_back(Key::word("wall_method", "mirror", {"mirror", "mirror_row", "dummy", "fixed"},
                                  "what lies beyond a wall: mirror, images of the fluid; mirror_row, the same "
                                  "and a row of wall particles on the wall; dummy, that row and layers behind "
-                                 "it with its velocity and pressure"));
+                                 "it with its velocity and pressure; fixed, that row and more wall particles "
+                                 "behind it, each with a density of its own"));
     }
     if (has_free_surface(c)) {
         keys.push_back(Key::word("surface_detector", "covered_ball", free_surface_detectors(),

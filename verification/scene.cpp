@@ -151,7 +151,18 @@ std::array<std::vector<double>, Dim> fluid_axes(const Layout& layout) {
     return along;
 }
 
+/// Rows of wall particles behind the one on the wall. The first row of the fluid is dx from the wall: its
+/// support reaches that less beyond.
+int layers_behind(const SceneRecord& scene) {
+    if (scene.case_settings.word("wall_method") != "fixed") {
+        return 0;
+    }
+    const solver::Kernel& kernel = solver::kernels::find(scene.scheme_settings.word("kernel"));
+    return static_cast<int>(std::ceil(kernel.support * scene.scheme_settings.number("h_over_dx") - 1));
+}
+
 /// Wall particles on the sides that have a row: beside the fluid's, and in the corners, each in one row.
+/// With wall_method=fixed, also behind them as far as a support reaches.
 template <int Dim>
 std::vector<solver::WallParticle<Dim>> wall_rows(const SceneRecord& scene, const Layout& layout,
                                                  const analytic::Domain& domain) {
@@ -172,7 +183,12 @@ std::vector<solver::WallParticle<Dim>> wall_rows(const SceneRecord& scene, const
                     along[d].push_back(domain.high[d]);
                 }
             }
-            along[across] = {boundary.face->high ? domain.high[across] : domain.low[across]};
+            along[across].clear();
+            for (int layer = 0; layer <= layers_behind(scene); ++layer) {
+                const double behind = layer * layout.rows[across].spacing;
+                along[across].push_back(boundary.face->high ? domain.high[across] + behind
+                                                            : domain.low[across] - behind);
+            }
             const Points<Dim> points = grid<Dim>(along);
             for (std::size_t k = 0; k < points[0].size(); ++k) {
                 solver::Vector<Dim> x;
@@ -364,6 +380,11 @@ void check_scene(const SceneRecord& scene) {
         std::ranges::any_of(boundaries, [](const auto& b) { return is_wall(b) && !b.face; })) {
         throw UserError(where + ": wall particles lie along plane walls only; give wall_method=mirror");
     }
+    if (scene.case_settings.has("wall_method") && scene.case_settings.word("wall_method") == "fixed" &&
+        !scene.scheme->compressible) {
+        throw UserError(where + ": wall_method=fixed needs a scheme whose density evolves (wcsph); give "
+                                "wall_method=mirror, mirror_row or dummy");
+    }
     if (scene.case_settings.word("arrangement") == "settled") {
         check_settled(scene, domain, solution.dimension, where);
     }
@@ -480,8 +501,11 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
         bounds_of(scene, values, volume * static_cast<double>(fluid), simulation.reference_speed, layout.dx);
     simulation.walls = walls_of<Dim>(scene);
     simulation.wall_particles = wall_particles;
-    if (scene.case_settings.has("wall_method") && scene.case_settings.word("wall_method") == "dummy") {
-        simulation.wall_method = solver::WallMethod::dummy;
+    if (scene.case_settings.has("wall_method")) {
+        const std::string& method = scene.case_settings.word("wall_method");
+        simulation.wall_method = method == "dummy"   ? solver::WallMethod::dummy
+                                 : method == "fixed" ? solver::WallMethod::fixed
+                                                     : solver::WallMethod::mirror;
     }
     if (scene.case_settings.has("surface_detector")) {
         const solver::Detector& detector =

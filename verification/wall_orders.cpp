@@ -40,7 +40,7 @@ std::vector<Expectation> expectations() {
                             "a Laplacian wrong by O(1) in a layer as thick as h, and wrong by O(h^2) "
                             "elsewhere: second order"));
         }
-        for (const char* method : {"dummy"}) {
+        for (const char* method : {"dummy", "fixed"}) {
             all.push_back(expectation(subject, method, first,
                                       "a Laplacian wrong by O(1/h) in a layer as thick as h: first order"));
         }
@@ -57,6 +57,7 @@ std::vector<Study> studies(const std::string& name) {
             with_every_wall.push_back(scheme + ":wall_method=" + method);
         }
     }
+    with_every_wall.emplace_back("wcsph:kernel=quintic_spline:wall_method=fixed");
     std::vector<std::string> of_the_papers{"isph_df:laplacian=schwaiger",
                                            "isph_dfs",
                                            "isph_lee",

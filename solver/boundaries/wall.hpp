@@ -42,7 +42,11 @@ enum class WallMethod {
     mirror,
     /// Layers behind each wall particle, dx apart along the normal, with its velocity and its pressure.
     /// Source: Lee 2008 §1.3; Xu 2009 §3.5.
-    dummy
+    dummy,
+    /// Wall particles alone: a row on the wall and more behind it, whose density evolves by that of the
+    /// fluid,
+    /// as only a compressible scheme's does. Source: Issa 2005 §2.7 (fixed mirror particles).
+    fixed
 };
 
 /// The pressure gradient normal to a wall.
