@@ -1,5 +1,9 @@
 #include "sphvv/solver/simulation.hpp"
 
+#include "sphvv/solver/free_surface/outward_normal.hpp"
+
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -275,6 +279,91 @@ void renew_neighbours(Simulation<Dim>& simulation) {
     make_images_and_list(simulation, 0);
 }
 
+namespace {
+
+bool lies_at_surface(const FreeSurface& surface, int particle) {
+    return surface.at_surface[particle] != 0;
+}
+
+/// The particle that a neighbour is, or is an image of.
+template <int Dim>
+int particle_of(const Simulation<Dim>& s, int neighbour) {
+    const int count = static_cast<int>(s.particles.size());
+    return neighbour < count ? neighbour : s.images.particle(neighbour - count);
+}
+
+/// Height (m) above the particle of a row of the plane through the particles at the surface around it.
+template <int Dim>
+double height_of_surface_row(const Simulation<Dim>& s, const Row<Dim>& row, const Vector<Dim>& n) {
+    using Coefficients = Eigen::Matrix<double, Dim + 1, 1>;
+    using Moments = Eigen::Matrix<double, Dim + 1, Dim + 1>;
+    const double R = s.neighbours.support_radius();
+    Moments A = Moments::Zero();
+    Coefficients b = Coefficients::Zero();
+    A(0, 0) = 1; // i itself
+    for (int k = 0; k < row.count; ++k) {
+        if (!lies_at_surface(*s.free_surface, particle_of(s, row.index[k]))) {
+            continue;
+        }
+        Vector<Dim> to;
+        for (int d = 0; d < Dim; ++d) {
+            to[d] = -row.separation[d][k];
+        }
+        const double cut = std::max(0., 1 - to.squaredNorm() / (R * R));
+        const double height = to.dot(n);
+        Coefficients place;
+        place << 1, (to - height * n) / R;
+        A += cut * cut * place * place.transpose();
+        b += cut * cut * height * place;
+    }
+    // There is nothing along the normal, and too few neighbours may leave more open: a trace of all of it.
+    A.diagonal().array() += 1e-9;
+    return A.ldlt().solve(b)[0];
+}
+
+template <int Dim>
+void find_surface_positions(Simulation<Dim>& s) {
+    FreeSurface& surface = *s.free_surface;
+    const int count = static_cast<int>(s.particles.size());
+    surface.depth.assign(count, 0);
+    for (int d = 0; d < Dim; ++d) {
+        surface.normal[d].assign(count, 0);
+    }
+    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+        if (!lies_at_surface(surface, i)) {
+            return;
+        }
+        const Vector<Dim> n = outward_normal<Dim>(row, UniformVolume{s.particle_mass / s.density});
+        for (int d = 0; d < Dim; ++d) {
+            surface.normal[d][i] = n[d];
+        }
+        const double half = 0.5 * std::pow(surface.volume[i], 1. / Dim);
+        surface.depth[i] = n.isZero() ? 0 : std::max(0., half + height_of_surface_row<Dim>(s, row, n));
+    });
+    s.count_sweeps(1);
+}
+
+template <int Dim>
+void find_surface_layer(Simulation<Dim>& s) {
+    FreeSurface& surface = *s.free_surface;
+    surface.near_surface.assign(s.particles.size(), 0);
+    const double reach = 4 * s.particle_spacing * s.particle_spacing; // (2 dx)^2
+    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+        bool near = lies_at_surface(surface, i);
+        for (int k = 0; k < row.count && !near; ++k) {
+            double squared = 0;
+            for (int d = 0; d < Dim; ++d) {
+                squared += row.separation[d][k] * row.separation[d][k];
+            }
+            near = squared <= reach && lies_at_surface(surface, particle_of(s, row.index[k]));
+        }
+        surface.near_surface[i] = near ? 1 : 0;
+    });
+    s.count_sweeps(1);
+}
+
+} // namespace
+
 template <int Dim>
 void add_surface_stage(Simulation<Dim>& simulation) {
     if (!simulation.free_surface) {
@@ -287,6 +376,12 @@ void add_surface_stage(Simulation<Dim>& simulation) {
         surface.detector->detect<Dim>({&s.neighbours, surface.volume.data(), s.particle_spacing},
                                       surface.threshold, {surface.at_surface.data()});
         s.count_sweeps(1);
+        if (surface.positions) {
+            find_surface_positions(s);
+        }
+        if (surface.layer) {
+            find_surface_layer(s);
+        }
     });
 }
 

@@ -50,12 +50,18 @@ struct SurvivalBounds {
     std::string minimum_spacing_reason;
 };
 
-/// The free surface of a scene that has one: which particles lie at it. Found anew in every step.
+/// The free surface of a scene that has one: which particles lie at it. Found anew in every step. What no
+/// scheme asks for is not formed.
 struct FreeSurface {
     const Detector* detector;
     double threshold;
-    std::vector<std::uint8_t> at_surface{}; ///< 1 or 0, particle by particle
-    std::vector<double> volume{};           ///< m^dim
+    bool positions = false;                      ///< asked for: normal and depth
+    bool layer = false;                          ///< asked for: near_surface
+    std::vector<std::uint8_t> at_surface{};      ///< 1 or 0, particle by particle
+    std::vector<double> volume{};                ///< m^dim
+    std::array<std::vector<double>, 3> normal{}; ///< out of the fluid, of particles at the surface
+    std::vector<double> depth{};              ///< m, of particles at the surface: how far below it they lie
+    std::vector<std::uint8_t> near_surface{}; ///< at the surface, or within 2 dx of a particle that is
 };
 
 /// A scene in motion: particles, their neighbours, the stages that advance them, and what has been counted.
@@ -145,7 +151,11 @@ void find_neighbours(Simulation<Dim>& simulation, double skin);
 template <int Dim>
 void renew_neighbours(Simulation<Dim>& simulation);
 
-/// Adds the stage that finds the particles at the free surface, if the scene has one.
+/// Adds the stage that finds the particles at the free surface, if the scene has one. The surface lies half a
+/// particle, V^(1/dim)/2, beyond the plane that fits the outermost particles best: of the particles at the
+/// surface within a support of i, weighted with (1 - r^2/R^2)^2, the heights above i along its normal are
+/// fitted by a linear function of their places in the tangent plane, which takes the disorder of single
+/// particles out.
 template <int Dim>
 void add_surface_stage(Simulation<Dim>& simulation);
 

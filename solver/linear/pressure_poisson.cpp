@@ -144,7 +144,7 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
             touched_cells.clear();
         }
     }
-    pinned_cell = problem.fixed_.empty() ? grid.cell_of(members[0]) : -1;
+    pinned_cell = problem.singular() ? grid.cell_of(members[0]) : -1;
     std::vector<Eigen::Triplet<double>> entries;
     for (int c = 0; c < cells; ++c) {
         const bool empty = first[c] == first[c + 1];
@@ -239,6 +239,7 @@ void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours, const Ima
     diagonal_.resize(neighbours.size());
     source_.resize(neighbours.size());
     fixed_.clear();
+    has_conditions_ = false;
 }
 
 template <int Dim>
@@ -263,6 +264,18 @@ void PressurePoisson<Dim>::fix_at_zero(int i) {
 }
 
 template <int Dim>
+void PressurePoisson<Dim>::set_condition(int i, double own) {
+    const auto row = neighbours_->row(i);
+    double total = own;
+    for (int k = 0; k < row.count; ++k) {
+        total += weights(i)[k];
+    }
+    diagonal_[i] = total;
+    source_[i] = 0;
+    has_conditions_ = true;
+}
+
+template <int Dim>
 void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
     if (!images_->empty()) {
         with_images_.assign(x, x + size());
@@ -278,7 +291,7 @@ void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
         }
         y[i] = diagonal_[i] * x[i] - sum(total);
     });
-    if (!symmetric() && fixed_.empty()) {
+    if (!symmetric() && singular()) {
         remove_mean(y, size());
     }
 }
@@ -288,7 +301,7 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     // Eigen's own vectors are aligned alike in every run; how it sums over foreign memory depends on the
     // address.
     Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(pressure, size());
-    if (fixed_.empty()) {
+    if (singular()) {
         remove_mean(source_.data(), size());
     }
     // A fixed pressure that starts at zero stays there: its equation has no residual, and no other changes
@@ -324,7 +337,7 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     } else {
         run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);
     }
-    if (fixed_.empty()) {
+    if (singular()) {
         remove_mean(p.data(), size());
     }
     std::copy(p.begin(), p.end(), pressure);

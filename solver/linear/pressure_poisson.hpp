@@ -70,6 +70,11 @@ public:
     /// unique, and no mean is projected out of anything.
     void fix_at_zero(int i);
 
+    /// Equation i, which has been written, becomes own p_i + sum_j w_ij (p_i - p_j) = 0 with weights that the
+    /// caller writes to weights(i): a condition on the pressure, and the solution is unique, as with fixed
+    /// ones.
+    void set_condition(int i, double own);
+
     /// Solves for `pressure`, which holds the first guess.
     LinearSolve solve(double* pressure);
 
@@ -84,7 +89,9 @@ private:
     struct CoarseSpace;
 
     Options options_;
-    bool symmetric() const { return options_.symmetric && images_->symmetric(); }
+    bool symmetric() const { return options_.symmetric && images_->symmetric() && !has_conditions_; }
+    /// Whether constants are in the null space.
+    bool singular() const { return fixed_.empty() && !has_conditions_; }
     bool is_fixed(int i) const { return !fixed_.empty() && fixed_[i]; }
     /// The particle whose pressure a neighbour has.
     int unknown_of(int neighbour) const {
@@ -96,6 +103,7 @@ private:
     mutable std::vector<double> with_images_; // x of a product, and its values at the images
     std::vector<double> weights_;
     std::vector<char> fixed_; // empty where none is
+    bool has_conditions_ = false;
     Eigen::VectorXd diagonal_;
     Eigen::VectorXd source_;
     std::unique_ptr<CoarseSpace> coarse_;

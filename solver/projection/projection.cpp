@@ -50,7 +50,8 @@ Viscosity viscosity_of(const Settings& settings) {
     if (word == "monaghan_cleary") {
         return Viscosity::monaghan_cleary;
     }
-    return word == "laplacian" && settings.word("laplacian") == "schwaiger" ? Viscosity::schwaiger : Viscosity::morris;
+    return word == "laplacian" && settings.word("laplacian") == "schwaiger" ? Viscosity::schwaiger
+                                                                            : Viscosity::morris;
 }
 
 template <int Dim>
@@ -186,6 +187,14 @@ std::vector<Key> keys(const Defaults& defaults) {
          Key::number("eta_over_h", 0, 0, 1, "1", "eta/h in the Morris Laplacian and in Monaghan-Cleary's"),
          Key::number("advective_limit", defaults.advective_limit, 1e-4, 2, "1", "dt <= this h/u_max"),
          Key::number("viscous_limit", defaults.viscous_limit, 1e-4, 2, "1", "dt <= this h^2/nu"),
+         Key::word(
+             "surface_pressure", "at_particle", {"at_particle", "true_position"},
+             "at a free surface p = 0: at the particles found there (as published), or where the surface "
+             "is, half a particle above the outermost row"),
+         Key::number(
+             "surface_peclet", 0, 0, 1e6, "1",
+             "Pe_max of the damping viscosity u_max dx/Pe_max within 2 dx of a free surface; 0 for none. "
+             "Xu 2009 §6.3: 7 to 150, 30 best"),
          Key::number("pressure_tolerance", 1e-5, 1e-14, 0.1, "1", "relative residual of the pressure solve"),
          Key::word("preconditioner", "two_level", {"two_level", "jacobi"}, "of the pressure solve")});
 }
@@ -198,6 +207,13 @@ SharedProjection<Dim> make_projection(Simulation<Dim>& s, Density density) {
     const Viscosity viscosity = viscosity_of(settings);
     const bool schwaiger = settings.word("laplacian") == "schwaiger";
     const double eta = settings.number("eta_over_h") * s.smoothing_length;
+    if (s.free_surface) {
+        s.free_surface->positions = settings.word("surface_pressure") == "true_position";
+        s.free_surface->layer = settings.number("surface_peclet") > 0;
+        if (s.free_surface->layer && viscosity != Viscosity::morris) {
+            throw UserError("surface_peclet takes the viscosity LM; give viscosity=morris");
+        }
+    }
     const bool summed = density == Density::summed;
     const bool keeps_L = !summed && (gradient == Gradient::normalised || schwaiger);
     return std::make_shared<Projection<Dim>>(Projection<Dim>{
@@ -207,6 +223,13 @@ SharedProjection<Dim> make_projection(Simulation<Dim>& s, Density density) {
         summed ? &particles.field("particle_density", 1, Lifetime::scratch, "density") : nullptr, gradient,
         viscosity, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density},
         poisson_of<Dim>(settings)});
+}
+
+template <int Dim>
+double damping_viscosity(const Simulation<Dim>& s) {
+    // isph_mls takes no such key, nor does a scene without a surface have one.
+    const bool damped = s.free_surface && s.free_surface->layer;
+    return damped ? s.reference_speed * s.particle_spacing / s.settings.number("surface_peclet") : 0;
 }
 
 template <int Dim>
@@ -221,7 +244,8 @@ void choose_time_step(Simulation<Dim>& s) {
         // error.)
         const double u_max = std::max(s.reference_speed, maximum_speed(s));
         limit = std::min(settings.number("advective_limit") * h / u_max,
-                         settings.number("viscous_limit") * h * h / s.kinematic_viscosity);
+                         settings.number("viscous_limit") * h * h /
+                             std::max(s.kinematic_viscosity, damping_viscosity(s)));
         if (settings.has("force_limit") && s.maximum_acceleration > 0) {
             limit = std::min(limit, settings.number("force_limit") * std::sqrt(h / s.maximum_acceleration));
         }
@@ -234,12 +258,56 @@ void drift(Simulation<Dim>& s) {
     add_scaled<Dim>(s.particles.position, s.time_step, s.particles.velocity);
 }
 
+namespace {
+
+/// u* with nu_i = max(nu, nu_d) near the surface: sum_j V_j (nu_i + nu_j) F_ij (u_i - u_j), LM of a viscosity
+/// that varies. Source: Xu 2009 §6.3, §2.1.4.
+template <int Dim>
+void form_damped_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
+    const auto u = constant_arrays<Dim>(s.particles.velocity);
+    const auto next = arrays<Dim>(p.velocity_next);
+    const FreeSurface& surface = *s.free_surface;
+    std::vector<double> nu(s.particles.with_images());
+    for (std::size_t i = 0; i < s.particles.size(); ++i) {
+        nu[i] = surface.near_surface[i] != 0 ? std::max(s.kinematic_viscosity, damping_viscosity(s))
+                                             : s.kinematic_viscosity;
+    }
+    s.images.fill(nu.data(), static_cast<int>(s.particles.size()));
+    const double V = s.particle_mass / s.density;
+    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+        if (p.renormalisation != nullptr) {
+            write_matrix<Dim>(*p.renormalisation, i, renormalisation<Dim>(row, p.volume));
+        }
+        std::array<Lanes, Dim> total{};
+        for (int k = 0; k < row.padded; k += lane_count) {
+            const Lanes r2 = squared_separation<Dim>(row, k) + p.eta_squared;
+            const Lanes inside = p.eta_squared > 0 ? squared_separation<Dim>(row, k) / r2 : Lanes{} + 1.0;
+            const Lanes weight =
+                V * (gather(nu.data(), row.index + k) + nu[i]) * load(row.slope + k) * inside;
+            for (int d = 0; d < Dim; ++d) {
+                total[d] += weight * (u[d][i] - gather(u[d], row.index + k));
+            }
+        }
+        const Vector<Dim> viscous = lane_sums<Dim>(total);
+        for (int d = 0; d < Dim; ++d) {
+            next[d][i] = u[d][i] + dt * (viscous[d] + s.body_force[d]);
+        }
+    });
+    s.count_sweeps(p.renormalisation != nullptr ? 2 : 1);
+}
+
+} // namespace
+
 template <int Dim>
 void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
     s.fill_walls(s.particles.velocity, Parity::velocity);
     const auto u = constant_arrays<Dim>(s.particles.velocity);
     const auto next = arrays<Dim>(p.velocity_next);
     const double dt_nu = dt * s.kinematic_viscosity;
+    if (s.free_surface && s.free_surface->layer) {
+        form_damped_velocity(s, p, dt);
+        return;
+    }
     const bool schwaiger = p.viscosity == Viscosity::schwaiger;
     const bool needs_L = p.renormalisation != nullptr || schwaiger;
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
@@ -326,17 +394,63 @@ TimeOrder euler_order(const Settings& /*settings*/) {
         "up over the steps, and with it a pressure that is the larger the finer the step"};
 }
 
+namespace {
+
+/// p_i + depth n.grad p = 0 with the normalised gradient: a pressure that is linear next to the surface
+/// vanishes on it. Where no normal or gradient can be told, p_i = 0.
+template <int Dim>
+void set_zero_on_surface(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, int i) {
+    const FreeSurface& surface = *s.free_surface;
+    const Row<Dim> row = s.neighbours.row(i);
+    const UniformVolume volume{s.particle_mass / s.density};
+    const auto L = determined_renormalisation<Dim>(row, volume);
+    if (surface.depth[i] == 0 || !L) {
+        poisson.fix_at_zero(i);
+        return;
+    }
+    Vector<Dim> n;
+    for (int d = 0; d < Dim; ++d) {
+        n[d] = surface.normal[d][i];
+    }
+    const Vector<Dim> L_n = *L * n;
+    // Of the size of the equations of Poisson's problem.
+    const double scale = poisson.diagonal(i);
+    const double V = s.particle_mass / s.density;
+    double* w = poisson.weights(i);
+    std::fill(w, w + row.padded, 0.0);
+    for (int k = 0; k < row.count; ++k) {
+        double along = 0;
+        for (int d = 0; d < Dim; ++d) {
+            along += L_n[d] * row.separation[d][k];
+        }
+        w[k] = -scale * surface.depth[i] * V * row.slope[k] * along;
+    }
+    poisson.set_condition(i, scale);
+}
+
+template <int Dim>
+void set_surface_pressure(Simulation<Dim>& s, PressurePoisson<Dim>& poisson) {
+    for (int i = 0; i < poisson.size(); ++i) {
+        if (s.free_surface->at_surface[i] == 0) {
+            continue;
+        }
+        if (s.free_surface->positions) {
+            set_zero_on_surface(s, poisson, i);
+        } else {
+            poisson.fix_at_zero(i);
+        }
+    }
+}
+
+} // namespace
+
 template <int Dim>
 void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pressure) {
+    if (s.free_surface) {
+        set_surface_pressure(s, poisson);
+    }
     if (!s.images.empty()) {
         poisson.set_image_differences(s.wall_pressure_differences());
-    }
-    if (s.free_surface) {
-        for (int i = 0; i < poisson.size(); ++i) {
-            if (s.free_surface->at_surface[i] != 0) {
-                poisson.fix_at_zero(i);
-            }
-        }
     }
     const LinearSolve solve = poisson.solve(pressure[0]);
     s.work.solver_iterations += solve.iterations;

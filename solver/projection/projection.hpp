@@ -57,6 +57,11 @@ enum class Density { constant, summed };
 template <int Dim>
 SharedProjection<Dim> make_projection(Simulation<Dim>& simulation, Density density);
 
+/// nu_d = u_max dx/Pe_max (m2/s) of the particles near a free surface; 0 where the scene does not damp.
+/// Source: Xu 2009 §6.3.
+template <int Dim>
+double damping_viscosity(const Simulation<Dim>& simulation);
+
 /// dt = min(advective_limit h/u_max, viscous_limit h^2/nu) and, for a scheme that has the key, force_limit
 /// sqrt(h/|a|) with the largest acceleration of the last step. Source: Xu 2009 §3.4; Lee 2008 §1.3.
 template <int Dim>
