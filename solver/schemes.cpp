@@ -1,6 +1,37 @@
 #include "sphvv/solver/schemes.hpp"
 
+#include <algorithm>
+
 namespace sphvv::solver {
+namespace {
+
+/// A scene whose physics nobody reads would be another scene without saying so.
+template <int Dim>
+void refuse_unread(const Scheme& scheme, const Simulation<Dim>& s) {
+    const auto check = [&](bool wanted, const char* stage, const char* what) {
+        const bool there =
+            std::ranges::any_of(s.stages, [stage](const Stage<Dim>& each) { return each.name == stage; });
+        if (wanted && !there) {
+            throw UserError("the scheme " + std::string(scheme.name) + " has no " + what +
+                            "; accepted with it: wcsph");
+        }
+    };
+    check(s.turbulence.has_value(), "eddy_viscosity", "turbulence");
+    check(s.wall_friction.has_value(), "wall_function", "wall function");
+    check(s.flow_driver.has_value(), "flow_driver", "flow driver");
+}
+
+} // namespace
+
+void Scheme::assemble(Simulation<2>& simulation) const {
+    assemble_2d(simulation);
+    refuse_unread(*this, simulation);
+}
+
+void Scheme::assemble(Simulation<3>& simulation) const {
+    assemble_3d(simulation);
+    refuse_unread(*this, simulation);
+}
 
 std::vector<Key> common_keys(std::string_view kernel, double h_over_dx) {
     std::vector<std::string> names;

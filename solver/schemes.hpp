@@ -39,8 +39,9 @@ struct Scheme {
     void (*assemble_2d)(Simulation<2>&);
     void (*assemble_3d)(Simulation<3>&);
 
-    void assemble(Simulation<2>& simulation) const { assemble_2d(simulation); }
-    void assemble(Simulation<3>& simulation) const { assemble_3d(simulation); }
+    /// Throws UserError if the scene has physics for which the scheme has no stage.
+    void assemble(Simulation<2>& simulation) const;
+    void assemble(Simulation<3>& simulation) const;
 };
 
 /// The keys that every scheme has.

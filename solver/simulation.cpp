@@ -168,6 +168,7 @@ void wrap_positions(Simulation<Dim>& simulation) {
 template <int Dim>
 void Simulation<Dim>::fill_walls(Field& field, Parity parity) const {
     const std::size_t fluid = particles.fluid_size();
+    const Field* edge = wall_friction ? particles.find("edge_velocity") : nullptr;
     for (std::size_t i = fluid; i < particles.size() && parity != Parity::even && parity != Parity::tensor;
          ++i) {
         const WallParticle<Dim>& particle = wall_particles[particles.id[i] - fluid];
@@ -176,6 +177,9 @@ void Simulation<Dim>::fill_walls(Field& field, Parity parity) const {
                                       : Vector<Dim>(Vector<Dim>::Zero());
         for (int d = 0; d < Dim; ++d) {
             field[d][i] = value[d];
+        }
+        for (int d = 0; d < Dim && parity == Parity::velocity && edge != nullptr; ++d) {
+            field[d][i] += (*edge)[d][i];
         }
     }
     images.fill(field, parity);

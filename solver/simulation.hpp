@@ -2,10 +2,13 @@
 
 #include "sphvv/solver/boundaries/images.hpp"
 #include "sphvv/solver/box.hpp"
+#include "sphvv/solver/flow_driver.hpp"
 #include "sphvv/solver/free_surface.hpp"
 #include "sphvv/solver/neighbours/neighbour_list.hpp"
 #include "sphvv/solver/particles.hpp"
 #include "sphvv/solver/settings.hpp"
+#include "sphvv/solver/turbulence.hpp"
+#include "sphvv/solver/wall_functions.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -82,7 +85,10 @@ struct Simulation {
     Settings settings;  ///< of the scheme
     const Kernel* kernel = nullptr;
 
-    std::optional<FreeSurface> free_surface; ///< where the pressure is 0
+    std::optional<FreeSurface> free_surface;   ///< where the pressure is 0
+    std::optional<Turbulence> turbulence;      ///< that adds nu_T to nu
+    std::optional<WallFriction> wall_friction; ///< at walls without slip, in place of u = 0
+    std::optional<FlowDriver> flow_driver;     ///< that sets a component of body_force
 
     double particle_spacing = 0;          ///< dx, m
     double smoothing_length = 0;          ///< h, m

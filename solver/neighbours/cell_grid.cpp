@@ -53,6 +53,16 @@ void CellGrid<Dim>::bin(const Box<Dim>& box, double radius, std::array<const dou
 }
 
 template <int Dim>
+int CellGrid<Dim>::cell_at(const std::array<double, Dim>& x) const {
+    int cell = 0;
+    for (int d = Dim - 1; d >= 0; --d) {
+        const double along = std::floor((x[d] - box_.low[d]) * (cells_[d] / box_.length(d)));
+        cell = cell * cells_[d] + static_cast<int>(std::clamp(along, 0., cells_[d] - 1.));
+    }
+    return cell;
+}
+
+template <int Dim>
 void CellGrid<Dim>::stretches_around(int cell, std::vector<Stretch>& stretches) const {
     stretches.clear();
     std::array<int, Dim> at;

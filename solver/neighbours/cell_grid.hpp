@@ -29,6 +29,8 @@ public:
     int cell_count() const { return static_cast<int>(start_.size()) - 1; }
     std::array<int, Dim> cells() const { return cells_; }
     int cell_of(int particle) const { return cell_of_[particle]; }
+    /// The cell of a point of the box; of one outside, the nearest.
+    int cell_at(const std::array<double, Dim>& x) const;
     /// Particles cell by cell.
     std::span<const int> order() const { return order_; }
     /// The stretches that hold every neighbour of a particle in `cell`; appended to an emptied `stretches`.

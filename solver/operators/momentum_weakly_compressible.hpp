@@ -18,6 +18,7 @@ struct MomentumFields {
     const double* pressure = nullptr;                                       ///< p, Pa
     std::array<const double*, symmetric_components<Dim>> renormalisation{}; ///< L_i, with V_j = m/rho_j
     const double* lowest_eigenvalue = nullptr;                              ///< of L_i^-1
+    const double* eddy_viscosity = nullptr;                                 ///< nu_T, m2/s
 };
 
 /// Lowest eigenvalue of L^-1 below which a particle is taken for one of the free surface. Source: Oger 2007.
@@ -183,8 +184,8 @@ struct RenormalisedCoherent {
 
 } // namespace pressure_forces
 
-/// The forms of the viscous force for a constant dynamic viscosity mu (kg/(m s)); made and called as the
-/// pressure forces are.
+/// The forms of the viscous force for a constant dynamic viscosity mu (kg/(m s)), and with an eddy viscosity
+/// beside it, mu_i = mu + rho_i nu_T,i; made and called as the pressure forces are.
 namespace viscous_forces {
 
 /// 2 mu m/(rho_i rho_j) F_ij r^2/(r^2 + eta^2) (u_i - u_j). Source: Morris et al. 1997; Lee 2008 §1.3.
@@ -219,6 +220,45 @@ struct MonaghanCleary {
             const Lanes safe = r2 > 0 ? r2 + eta_squared : Lanes{} + 1.0;
             return pressure_forces::central<Dim>(pairs, scale * gather(fields.specific_volume, pairs.j()) *
                                                             pairs.slope() * along / safe);
+        };
+    }
+};
+
+/// (mu_i + mu_j) m/(rho_i rho_j) F_ij r^2/(r^2 + eta^2) (u_i - u_j), div(nu grad u): Morris with an eddy
+/// viscosity. Source: Morris et al. 1997; Issa 2005 §2.
+struct MorrisEddy {
+    template <int Dim>
+    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
+        const double v_i = fields.specific_volume[i];
+        return [&fields, i, own = m * (2 * mu * v_i + fields.eddy_viscosity[i]), other = m * v_i,
+                eta_squared](const Pairs<Dim>& pairs) {
+            const Lanes viscous = (own * gather(fields.specific_volume, pairs.j()) +
+                                   other * gather(fields.eddy_viscosity, pairs.j())) *
+                                  regularised_slope<Dim>(pairs.row, pairs.k, eta_squared);
+            return [viscous, pairs, &fields, i](int d) {
+                return viscous * (fields.u[d][i] - gather(fields.u[d], pairs.j()));
+            };
+        };
+    }
+};
+
+/// 2(dim+2) m (nu_i + nu_j)/(rho_i + rho_j) (u_ij . r_ij)/(r^2 + eta^2) gradW_ij with nu_i = mu/rho_i +
+/// nu_T,i: Monaghan-Cleary with an eddy viscosity. Source: Issa 2005 §5.1 (8 in 2-D).
+struct MonaghanClearyEddy {
+    template <int Dim>
+    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
+        const double v_i = fields.specific_volume[i];
+        return [&fields, i, scale = 2 * (Dim + 2) * m * v_i, v_i, nu_i = fields.eddy_viscosity[i], mu,
+                eta_squared](const Pairs<Dim>& pairs) {
+            Lanes along{};
+            for (int d = 0; d < Dim; ++d) {
+                along += (fields.u[d][i] - gather(fields.u[d], pairs.j())) * pairs.separation(d);
+            }
+            const Lanes r2 = squared_separation<Dim>(pairs.row, pairs.k);
+            const Lanes safe = r2 > 0 ? r2 + eta_squared : Lanes{} + 1.0;
+            const Lanes v_j = gather(fields.specific_volume, pairs.j());
+            const Lanes both = mu + (nu_i + gather(fields.eddy_viscosity, pairs.j())) / (v_i + v_j);
+            return pressure_forces::central<Dim>(pairs, scale * v_j * both * pairs.slope() * along / safe);
         };
     }
 };

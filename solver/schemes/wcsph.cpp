@@ -22,7 +22,7 @@ void choose_time_step(Simulation<Dim>& s, double sound_speed) {
     if (fixed == 0) {
         // Lee 2008 §1.3: 0.4 h/c0, 0.25 sqrt(h/|f|), 0.125 h^2/nu.
         limit = std::min(s.settings.number("acoustic_limit") * h / sound_speed,
-                         s.settings.number("viscous_limit") * h * h / s.kinematic_viscosity);
+                         s.settings.number("viscous_limit") * h * h / largest_viscosity(s));
         if (s.maximum_acceleration > 0) {
             limit = std::min(limit, s.settings.number("force_limit") * std::sqrt(h / s.maximum_acceleration));
         }
@@ -40,8 +40,17 @@ void add_time_step_stage(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& 
 /// with the old one the step is forward Euler for sound and unstable at any dt > nu/c0^2.
 template <int Dim>
 void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f) {
-    add_time_step_stage(s, f);
+    if (!s.turbulence) {
+        add_time_step_stage(s, f);
+    }
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
+    add_wall_function_stage(s);
+    if (s.turbulence) {
+        // The limit of the step is that of the eddy viscosity which acts in it.
+        add_turbulence_stages(s);
+        add_time_step_stage(s, f);
+    }
+    add_flow_driver_stage(s);
     s.add_stage("momentum", [f](Simulation<Dim>& sim) {
         accelerate(sim, *f);
         sim.maximum_acceleration = largest_norm<Dim>(f->acceleration);
@@ -165,6 +174,17 @@ void add_verlet_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f)
     });
 }
 
+/// Eddy viscosity and velocity at the edge are formed once in a step: in one with several levels they would
+/// be those of another level. And a driven flow is unstable where a step leaps over the one before
+/// (flow_driver.hpp).
+template <int Dim>
+void refuse_levels(const Simulation<Dim>& s, const std::string& integrator) {
+    if ((s.turbulence || s.wall_friction || s.flow_driver) && integrator != "explicit") {
+        throw UserError("integrator '" + integrator +
+                        "' has no turbulence, wall function or flow driver; accepted with them: explicit");
+    }
+}
+
 template <int Dim>
 void assemble(Simulation<Dim>& s) {
     const Tait tait{s.density, s.settings.number("c0_over_u") * s.reference_speed, s.settings.number("gamma"),
@@ -172,6 +192,7 @@ void assemble(Simulation<Dim>& s) {
                         s.reference_speed};
     const auto f = std::make_shared<Rates<Dim>>(rates(s, tait));
     const std::string& integrator = s.settings.word("integrator");
+    refuse_levels(s, integrator);
     if (integrator == "explicit") {
         add_explicit_stages(s, f);
     } else if (integrator == "predictor_corrector") {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -68,6 +69,29 @@ Assignments texts_of(const Settings& settings) {
     return texts;
 }
 
+/// The physics that a scene has beside its scheme, by name and by key; empty for a laminar scene.
+template <int Dim>
+Assignments texts_of_physics(const Simulation<Dim>& simulation) {
+    Assignments texts;
+    const auto add = [&texts](const std::string& kind, std::string_view name, const Settings& settings) {
+        texts[kind] = name;
+        for (const auto& [key, text] : texts_of(settings)) {
+            texts[kind + "." + key] = text;
+        }
+    };
+    if (simulation.turbulence) {
+        add("turbulence", simulation.turbulence->model->name, simulation.turbulence->settings);
+    }
+    if (simulation.wall_friction) {
+        add("wall_function", simulation.wall_friction->function->name, simulation.wall_friction->settings);
+    }
+    if (simulation.flow_driver) {
+        texts["flow_driver.direction"] = std::to_string(simulation.flow_driver->direction);
+        texts["flow_driver.bulk_velocity"] = shortest(simulation.flow_driver->bulk_velocity);
+    }
+    return texts;
+}
+
 // ---- writing
 
 void write_texts(const Group& group, const Assignments& texts) {
@@ -119,6 +143,21 @@ void write_stages(const Group& group, const std::vector<Stage<Dim>>& stages) {
     }
     group.create_dataset("name", all(names));
     group.create_dataset("pair_evaluations", all(pair_evaluations));
+}
+
+template <int Dim>
+void write_physics(const Group& root, const Simulation<Dim>& simulation) {
+    const Assignments texts = texts_of_physics(simulation);
+    if (!texts.empty()) {
+        write_texts(root.create_group("physics"), texts);
+    }
+    if (simulation.flow_driver) {
+        const FlowDriver& driver = *simulation.flow_driver;
+        const Group group = root.create_group("flow_driver");
+        group.set_attribute("force", simulation.body_force[driver.direction]);
+        group.set_attribute("previous_error", driver.previous_error);
+        group.set_attribute("started", static_cast<std::int64_t>(driver.started));
+    }
 }
 
 // ---- reading
@@ -187,6 +226,8 @@ void check_scene(const Group& root, const Simulation<Dim>& simulation, const Ass
     check_texts(root, read_texts(root.group("settings")), texts_of(simulation.settings));
     check_equal(root, "number of particles", Integers{root.attribute<std::int64_t>("particles")},
                 Integers{static_cast<std::int64_t>(simulation.particles.size())});
+    check_texts(root, root.has_member("physics") ? read_texts(root.group("physics")) : Assignments{},
+                texts_of_physics(simulation));
     const Group scene = root.group("scene");
     for (const auto& [name, member] : constants<Dim>) {
         check_equal(root, name, {scene.attribute<double>(name)}, std::vector<double>{simulation.*member});
@@ -257,6 +298,24 @@ std::vector<int> read_identity(const Group& group, std::size_t count) {
     return id;
 }
 
+/// The driver as it was, and its component of the body force (m/s2).
+struct DriverState {
+    FlowDriver driver;
+    double force;
+};
+
+template <int Dim>
+std::optional<DriverState> read_driver(const Group& root, const Simulation<Dim>& simulation) {
+    if (!simulation.flow_driver) {
+        return std::nullopt;
+    }
+    const Group group = root.group("flow_driver");
+    DriverState state{*simulation.flow_driver, group.attribute<double>("force")};
+    state.driver.previous_error = group.attribute<double>("previous_error");
+    state.driver.started = group.attribute<std::int64_t>("started") != 0;
+    return state;
+}
+
 template <int Dim>
 std::vector<std::int64_t> read_stages(const Group& root, const std::vector<Stage<Dim>>& stages) {
     const Group group = root.group("stages");
@@ -289,6 +348,7 @@ void write_snapshot(const Simulation<Dim>& simulation, const Assignments& metada
         write_texts(root.create_group("metadata"), metadata);
         write_texts(root.create_group("settings"), texts_of(simulation.settings));
         write_scene(root.create_group("scene"), simulation);
+        write_physics(root, simulation);
         const Group work = root.create_group("work");
         for (const auto& [name, member] : counters) {
             work.set_attribute(name, simulation.work.*member);
@@ -323,7 +383,11 @@ void read_snapshot(Simulation<Dim>& simulation, const Assignments& metadata,
     std::transform(progress<Dim>.begin(), progress<Dim>.end(), reached.begin(),
                    [&](const auto& entry) { return root.attribute<double>(entry.first); });
     const auto step = root.attribute<std::int64_t>("step");
+    const std::optional<DriverState> driven = read_driver(root, simulation);
 
+    // Images are of particles that are elsewhere now; the next search for neighbours makes new ones.
+    simulation.images = {};
+    simulation.particles.set_images(0);
     simulation.step = step;
     simulation.work = work;
     simulation.particles.id = std::move(id);
@@ -332,6 +396,10 @@ void read_snapshot(Simulation<Dim>& simulation, const Assignments& metadata,
     }
     for (std::size_t k = 0; k < reached.size(); ++k) {
         simulation.*(progress<Dim>[k].second) = reached[k];
+    }
+    if (driven) {
+        simulation.flow_driver = driven->driver;
+        simulation.body_force[driven->driver.direction] = driven->force;
     }
     for (std::size_t k = 0; k < simulation.stages.size(); ++k) {
         simulation.stages[k].pair_evaluations = pair_evaluations[k];

@@ -16,8 +16,9 @@ namespace sphvv::solver {
 /// `time`, `end_time`, `time_step` (s), `maximum_acceleration` (m/s2) | | `/particles` | `id` and every state
 /// field by its name: scalars N, vectors N × 3 (z = 0 in 2-D), others N × components | | `/scene` | box and
 /// physical constants, SI units | | `/settings` | of the scheme, as text | | `/metadata` | text that the
-/// caller gave: case, scheme, n, … | | `/work` | the counters of Work | | `/stages` | `name` and
-/// `pair_evaluations` of each stage |
+/// caller gave: case, scheme, n, … | | `/work` | the counters of Work | | `/physics` | turbulence, wall
+/// function and flow driver of a scene that has one, as text | | `/flow_driver` | `force` (m/s2),
+/// `previous_error` (m/s), `started` | | `/stages` | `name` and `pair_evaluations` of each stage |
 ///
 /// Nothing in it depends on the machine, the hour or the number of threads. (Seconds per stage are not kept.)
 constexpr std::int64_t snapshot_version = 1;

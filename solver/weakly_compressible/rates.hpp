@@ -54,7 +54,8 @@ struct Rates {
     double eta_squared; ///< of the viscous force, m2
     Continuity form;
     Forces<Dim> forces;
-    int force_sweeps; ///< visits of every pair in forces.accelerate
+    int force_sweeps;            ///< visits of every pair in forces.accelerate
+    const Field* eddy_viscosity; ///< nu_T, m2/s; of a scene with turbulence
 };
 
 template <int Dim>
@@ -69,6 +70,9 @@ MomentumFields<Dim> momentum_fields(const Simulation<Dim>& s, const Rates<Dim>& 
     }
     if (f.lowest_eigenvalue != nullptr) {
         fields.lowest_eigenvalue = (*f.lowest_eigenvalue)[0];
+    }
+    if (f.eddy_viscosity != nullptr) {
+        fields.eddy_viscosity = (*f.eddy_viscosity)[0];
     }
     return fields;
 }
@@ -128,6 +132,16 @@ Forces<Dim> forces_with(std::string_view pressure_force) {
     return of.at(pressure_force);
 }
 
+template <int Dim>
+Forces<Dim> forces_of(std::string_view pressure_force, std::string_view viscosity, bool eddy) {
+    using namespace viscous_forces;
+    if (viscosity == "morris") {
+        return eddy ? forces_with<Dim, MorrisEddy>(pressure_force) : forces_with<Dim, Morris>(pressure_force);
+    }
+    return eddy ? forces_with<Dim, MonaghanClearyEddy>(pressure_force)
+                : forces_with<Dim, MonaghanCleary>(pressure_force);
+}
+
 /// The rates that the settings of a simulation ask for, with their fields.
 template <int Dim>
 Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
@@ -154,10 +168,9 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
             continuity == "sigma_2"   ? Continuity::sigma_2
             : continuity == "sigma_1" ? Continuity::sigma_1
                                       : Continuity::renormalised,
-            s.settings.word("viscosity") == "morris"
-                ? forces_with<Dim, viscous_forces::Morris>(pressure_force)
-                : forces_with<Dim, viscous_forces::MonaghanCleary>(pressure_force),
-            hybrid ? 2 : 1};
+            forces_of<Dim>(pressure_force, s.settings.word("viscosity"), s.turbulence.has_value()),
+            hybrid ? 2 : 1,
+            s.turbulence ? &scratch("eddy_viscosity", 1, "momentum") : nullptr};
 }
 
 /// 1/rho and, where it is read, p/rho^2.
