@@ -437,6 +437,7 @@ std::array<double, Dim> momentum(const Simulation<Dim>& simulation) {
     template void Simulation<Dim>::fill_walls_forced(Field&, double) const;                                  \
     template void Simulation<Dim>::fill_walls_pressure(Field&) const;                                        \
     template std::vector<double> Simulation<Dim>::wall_pressure_differences() const;                         \
+    template Vector<Dim> Simulation<Dim>::wall_pressure_gradient() const;                                    \
     template void advance(Simulation<Dim>&);                                                                 \
     template double even_step(const Simulation<Dim>&, double);                                               \
     template void wrap_positions(Simulation<Dim>&);                                                          \

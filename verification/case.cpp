@@ -82,8 +82,10 @@ std::vector<Key> case_keys(const Case& c) {
     const analytic::Solution& solution = analytic::solutions::find(c.solution);
     std::vector<Key> keys = c.keys;
     for (const analytic::Parameter& p : solution.parameters) {
-        keys.push_back(Key::number(std::string(p.name), p.value, p.low, p.high, std::string(p.unit),
-                                   std::string(p.summary)));
+        if (std::ranges::find(c.derived, p.name) == c.derived.end()) {
+            keys.push_back(Key::number(std::string(p.name), p.value, p.low, p.high, std::string(p.unit),
+                                       std::string(p.summary)));
+        }
     }
     keys.push_back(Key::number("end_time", c.end_time, 1e-9, 1e9, "s", "time at which errors are taken"));
     const bool bounded = has_walls(c) || has_free_surface(c);

@@ -94,6 +94,9 @@ struct Measure {
 struct SceneHooks {
     /// Changes parameters of the solution that follow from other settings (a sound speed, from the scheme's).
     std::function<void(const SceneRecord&, analytic::Values&)> values{};
+    /// Changes parameters to those of the solution whose domain the lattice fills, where that is not the
+    /// domain of the flow: that of a column before it settles.
+    std::function<void(const SceneRecord&, analytic::Values&)> lattice_values{};
     /// m/s, the largest speed that the scene expects, where the solution's own is none to go by.
     std::function<double(const SceneRecord&, const analytic::Values&)> reference_speed{};
     /// Moves, adds or takes away particles of the lattice; component by component, m.
@@ -126,6 +129,8 @@ struct Case {
     /// Not 0: nothing varies along x, and the box is so many columns of particles wide unless it is told
     /// otherwise.
     int columns = 0;
+    /// Parameters of the solution that are no keys: hooks.values derives them from other settings.
+    std::vector<std::string> derived{};
     bool starts_at_rest = false; ///< although the solution is that of a later time, or has no start
     /// Direction of the profiles that are drawn, and the component of the velocity in them; none if negative.
     int profile_direction = -1;

@@ -80,6 +80,15 @@ std::vector<analytic::Boundary> boundaries_of(const SceneRecord& scene) {
     return analytic::boundaries(analytic::solutions::find(scene.flow->solution), solution_values(scene));
 }
 
+/// The domain that the lattice fills.
+analytic::Domain lattice_domain(const SceneRecord& scene) {
+    analytic::Values values = solution_values(scene);
+    if (scene.flow->hooks.lattice_values) {
+        scene.flow->hooks.lattice_values(scene, values);
+    }
+    return analytic::solutions::find(scene.flow->solution).domain(values);
+}
+
 Layout layout_of(const SceneRecord& scene, const analytic::Domain& domain, int dimension) {
     Layout layout{spacing_of(scene), {}};
     const Ends ends = ends_of(scene);
@@ -277,7 +286,8 @@ std::array<std::vector<double>, Dim> settled_points(const solver::Box<Dim>& box,
 analytic::Values solution_values(const SceneRecord& scene) {
     analytic::Values values;
     for (const analytic::Parameter& p : analytic::solutions::find(scene.flow->solution).parameters) {
-        values.emplace(p.name, scene.case_settings.number(p.name));
+        values.emplace(p.name,
+                       scene.case_settings.has(p.name) ? scene.case_settings.number(p.name) : p.value);
     }
     if (scene.flow->columns > 0) {
         values["length"] = scene.case_settings.integer("columns") * spacing_of(scene);
@@ -350,7 +360,7 @@ SceneRecord resolve_scene(const Case& flow, const Variant& variant, const solver
 
 void check_scene(const SceneRecord& scene) {
     const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
-    const analytic::Domain domain = solution.domain(solution_values(scene));
+    const analytic::Domain domain = lattice_domain(scene);
     const Layout layout = layout_of(scene, domain, solution.dimension);
     const solver::Kernel& kernel = solver::kernels::find(scene.scheme_settings.word("kernel"));
     const double support = kernel.support * scene.scheme_settings.number("h_over_dx") * layout.dx;
@@ -474,7 +484,7 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
     const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
     const analytic::Values values = solution_values(scene);
     const analytic::Medium medium = solution.medium(values);
-    const analytic::Domain domain = solution.domain(values);
+    const analytic::Domain domain = lattice_domain(scene);
     const Layout layout = layout_of(scene, domain, Dim);
     const auto& hooks = scene.flow->hooks;
 

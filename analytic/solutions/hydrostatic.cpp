@@ -83,6 +83,11 @@ Scalar bed_pressure(const Values& given) {
     return [c = constants(given)](const Vector&, double) { return c.rho * c.g * c.start_depth; };
 }
 
+Scalar motion(const Values& given) {
+    resolve(hydrostatic(), given);
+    return [](const Vector&, double) { return 0.; };
+}
+
 } // namespace
 
 const Solution& hydrostatic() {
@@ -116,6 +121,7 @@ const Solution& hydrostatic() {
             {
                 {"settled_depth", "m", "H", depth},
                 {"bed_pressure", "Pa", "ρ0gH_i, the weight of the start", bed_pressure},
+                {"motion", "1", "kinetic energy over M g H: none", motion},
             },
     };
     return solution;

@@ -91,7 +91,7 @@ TEST(Quantity, NamesAnUnknownQuantityAndTheAcceptedOnes) {
     const Solution& column = solutions::find("hydrostatic");
     EXPECT_EQ(refusal([&] { quantity(column, "depth", {}); }),
               "The exact solution hydrostatic has no quantity \"depth\"; accepted: settled_depth, "
-              "bed_pressure.");
+              "bed_pressure, motion.");
     const Solution& vortices = solutions::find("taylor_green");
     EXPECT_EQ(refusal([&] { quantity(vortices, "depth", {}); }),
               "The exact solution taylor_green has no quantity \"depth\"; accepted: none.");

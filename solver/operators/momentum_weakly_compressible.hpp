@@ -3,6 +3,8 @@
 #include "sphvv/solver/operators/laplacian_morris.hpp"
 #include "sphvv/solver/operators/symmetric_matrix.hpp"
 
+#include <concepts>
+
 /// The momentum equation of a weakly compressible fluid, particle by particle. What a pair of particles does
 /// to i is a type that is made at i and called for eight neighbours at a time; the form of the pressure force
 /// and that of the viscous force are template parameters, so that the loop over pairs asks nothing.
@@ -188,6 +190,9 @@ struct RenormalisedCoherent {
 /// beside it, mu_i = mu + rho_i nu_T,i; made and called as the pressure forces are.
 namespace viscous_forces {
 
+/// Of an inviscid fluid: there is no such force, and no pair is asked for one.
+struct None {};
+
 /// 2 mu m/(rho_i rho_j) F_ij r^2/(r^2 + eta^2) (u_i - u_j). Source: Morris et al. 1997; Lee 2008 §1.3.
 struct Morris {
     template <int Dim>
@@ -266,6 +271,20 @@ struct MonaghanClearyEddy {
 } // namespace viscous_forces
 
 /// Both forces together, to be called for eight pairs at a time.
+template <int Dim, class PressureForce, class ViscousForce>
+requires std::same_as<ViscousForce, viscous_forces::None>
+auto pair_acceleration(const Row<Dim>& row, int i, const MomentumFields<Dim>& fields, double m, double /*mu*/,
+                       double /*eta_squared*/) {
+    return [pressure = PressureForce::template at<Dim>(row, i, fields, m)](const Pairs<Dim>& pairs) {
+        const auto by_pressure = pressure(pairs);
+        std::array<Lanes, Dim> result;
+        for (int d = 0; d < Dim; ++d) {
+            result[d] = by_pressure(d);
+        }
+        return result;
+    };
+}
+
 template <int Dim, class PressureForce, class ViscousForce>
 auto pair_acceleration(const Row<Dim>& row, int i, const MomentumFields<Dim>& fields, double m, double mu,
                        double eta_squared) {

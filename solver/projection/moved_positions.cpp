@@ -36,9 +36,7 @@ void add_stages_at_moved_positions(Simulation<Dim>& s) {
     s.add_stage("drift", drift<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });
     add_surface_stage(s);
-    s.add_stage("viscosity", [projection](Simulation<Dim>& sim) {
-        form_viscous_velocity(sim, *projection, sim.time_step);
-    });
+    add_forces_stages(s, projection);
     s.add_stage("pressure_poisson", [projection](Simulation<Dim>& sim) {
         write_divergence_equations(sim, *projection);
         solve_poisson(sim, projection->poisson, projection->pressure);

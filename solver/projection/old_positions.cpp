@@ -12,11 +12,11 @@ void relax_density(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, const Fiel
                    double relaxation) {
     const int count = static_cast<int>(s.particles.size());
     const double scale = relaxation / (s.time_step * s.time_step);
-    const double mean = mean_density(s, density);
+    const double target = target_density(s, density);
     const double* rho = density[0];
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < count; ++i) {
-        poisson.source(i) -= scale * (mean - rho[i]);
+        poisson.source(i) -= scale * (target - rho[i]);
     }
     poisson.set_round_off(sum_round_off * (s.density * scale + s.density * s.reference_speed /
                                                                    (s.smoothing_length * s.time_step)));
@@ -47,9 +47,7 @@ void add_stages_at_old_positions(Simulation<Dim>& s, double relaxation) {
     s.add_stage("time_step", choose_time_step<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
     add_surface_stage(s);
-    s.add_stage("viscosity", [projection](Simulation<Dim>& sim) {
-        form_viscous_velocity(sim, *projection, sim.time_step);
-    });
+    add_forces_stages(s, projection);
     if (density != nullptr) {
         s.add_stage("density", [density](Simulation<Dim>& sim) { sum_density(sim, *density); });
     }

@@ -172,6 +172,12 @@ int weight_sweeps(const Projection<Dim>& p) {
     return p.schwaiger ? 2 : 1;
 }
 
+/// Of the fluid, or of the layer next to a free surface.
+template <int Dim>
+bool is_viscous(const Simulation<Dim>& s) {
+    return s.kinematic_viscosity > 0 || (s.free_surface && s.free_surface->layer);
+}
+
 } // namespace
 
 std::vector<Key> keys(const Defaults& defaults) {
@@ -218,8 +224,10 @@ SharedProjection<Dim> make_projection(Simulation<Dim>& s, Density density) {
     const bool keeps_L = !summed && (gradient == Gradient::normalised || schwaiger);
     return std::make_shared<Projection<Dim>>(Projection<Dim>{
         particles.field("pressure", 1, Lifetime::state, "pressure_poisson"),
-        particles.field("velocity_next", Dim, Lifetime::scratch, "viscosity"),
-        keeps_L ? &particles.field("renormalisation", Dim * Dim, Lifetime::scratch, "viscosity") : nullptr,
+        particles.field("velocity_next", Dim, Lifetime::scratch, forces_name(s)),
+        keeps_L ? &particles.field("renormalisation", Dim * Dim, Lifetime::scratch,
+                                   is_viscous(s) ? "viscosity" : "renormalisation")
+                : nullptr,
         summed ? &particles.field("particle_density", 1, Lifetime::scratch, "density") : nullptr, gradient,
         viscosity, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density},
         poisson_of<Dim>(settings)});
@@ -296,8 +304,6 @@ void form_damped_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
     s.count_sweeps(p.renormalisation != nullptr ? 2 : 1);
 }
 
-} // namespace
-
 template <int Dim>
 void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
     s.fill_walls(s.particles.velocity, Parity::velocity);
@@ -328,6 +334,50 @@ void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
     s.count_sweeps((needs_L ? 1 : 0) + (schwaiger ? 3 : 1));
 }
 
+} // namespace
+
+template <int Dim>
+void form_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
+    if (is_viscous(s)) {
+        form_viscous_velocity(s, p, dt);
+        return;
+    }
+    const int count = static_cast<int>(s.particles.size());
+    for (int d = 0; d < Dim; ++d) {
+        const double* u = s.particles.velocity[d];
+        double* next = p.velocity_next[d];
+        const double change = dt * s.body_force[d];
+#pragma omp parallel for simd schedule(static)
+        for (int i = 0; i < count; ++i) {
+            next[i] = u[i] + change;
+        }
+    }
+}
+
+template <int Dim>
+std::string forces_name(const Simulation<Dim>& s) {
+    return is_viscous(s) ? "viscosity" : "body_force";
+}
+
+template <int Dim>
+void form_renormalisation(Simulation<Dim>& s, Projection<Dim>& p) {
+    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+        write_matrix<Dim>(*p.renormalisation, i, renormalisation<Dim>(row, p.volume));
+    });
+    s.count_sweeps(1);
+}
+
+template <int Dim>
+void add_forces_stages(Simulation<Dim>& s, const SharedProjection<Dim>& projection) {
+    if (!is_viscous(s) && projection->renormalisation != nullptr) {
+        s.add_stage("renormalisation",
+                    [projection](Simulation<Dim>& sim) { form_renormalisation(sim, *projection); });
+    }
+    s.add_stage(forces_name(s), [projection](Simulation<Dim>& sim) {
+        form_forced_velocity(sim, *projection, sim.time_step);
+    });
+}
+
 template <int Dim>
 void sum_density(Simulation<Dim>& s, Field& density) {
     const UniformVolume mass{s.particle_mass};
@@ -338,7 +388,10 @@ void sum_density(Simulation<Dim>& s, Field& density) {
 }
 
 template <int Dim>
-double mean_density(const Simulation<Dim>& s, const Field& density) {
+double target_density(const Simulation<Dim>& s, const Field& density) {
+    if (s.free_surface) {
+        return s.density;
+    }
     const int count = static_cast<int>(s.particles.size());
     return deterministic_sum(count, [&](int i) { return density[0][i]; }) / count;
 }
@@ -368,12 +421,12 @@ void write_density_equations(Simulation<Dim>& s, Projection<Dim>& p, double tau_
     fill_density_images(s, p);
     const MassOverDensity particles{s.particle_mass, (*p.density)[0]};
     const double scale = 1 / (s.density * tau_squared);
-    const double mean = mean_density(s, *p.density);
+    const double target = target_density(s, *p.density);
     p.poisson.reset(s.neighbours, s.images);
     p.poisson.set_round_off(sum_round_off * scale * s.density);
     for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
         const Matrix<Dim> L = renormalisation_at<Dim>(p, p.schwaiger, i, row, particles);
-        p.poisson.source(i) = -scale * (mean - particles.rho[i]);
+        p.poisson.source(i) = -scale * (target - particles.rho[i]);
         p.poisson.diagonal(i) = write_weights<Dim>(p, i, row, particles, L);
     });
     s.count_sweeps(weight_sweeps(p) + renormalisation_sweeps(p, p.schwaiger));
@@ -485,9 +538,12 @@ void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, Fi
     template SharedProjection<Dim> make_projection(Simulation<Dim>&, Density);                               \
     template void choose_time_step(Simulation<Dim>&);                                                        \
     template void drift(Simulation<Dim>&);                                                                   \
-    template void form_viscous_velocity(Simulation<Dim>&, Projection<Dim>&, double);                         \
+    template void form_forced_velocity(Simulation<Dim>&, Projection<Dim>&, double);                          \
+    template std::string forces_name(const Simulation<Dim>&);                                                \
+    template void form_renormalisation(Simulation<Dim>&, Projection<Dim>&);                                  \
+    template void add_forces_stages(Simulation<Dim>&, const SharedProjection<Dim>&);                         \
     template void sum_density(Simulation<Dim>&, Field&);                                                     \
-    template double mean_density(const Simulation<Dim>&, const Field&);                                      \
+    template double target_density(const Simulation<Dim>&, const Field&);                                    \
     template void write_divergence_equations(Simulation<Dim>&, Projection<Dim>&);                            \
     template void write_density_equations(Simulation<Dim>&, Projection<Dim>&, double);                       \
     template void solve_poisson(Simulation<Dim>&, PressurePoisson<Dim>&, Field&);                            \

@@ -72,9 +72,22 @@ template <int Dim>
 void drift(Simulation<Dim>& simulation);
 
 /// u* = u + dt (nu Laplacian u + f), f the body force, on the current neighbours, at the density rho_0;
-/// writes L_i where it is kept.
+/// writes L_i where it is kept. An inviscid fluid has no sweep over neighbours here: u* = u + dt f, and L_i
+/// is left to form_renormalisation().
 template <int Dim>
-void form_viscous_velocity(Simulation<Dim>& simulation, Projection<Dim>& projection, double dt);
+void form_forced_velocity(Simulation<Dim>& simulation, Projection<Dim>& projection, double dt);
+
+/// What the stage of form_forced_velocity() is called: "viscosity", or "body_force" of an inviscid fluid.
+template <int Dim>
+std::string forces_name(const Simulation<Dim>& simulation);
+
+/// L_i with V = m/rho_0 on the current neighbours.
+template <int Dim>
+void form_renormalisation(Simulation<Dim>& simulation, Projection<Dim>& projection);
+
+/// Adds the stage of form_forced_velocity(), before it for an inviscid fluid that of L_i where it is kept.
+template <int Dim>
+void add_forces_stages(Simulation<Dim>& simulation, const SharedProjection<Dim>& projection);
 
 /// rho_i = m sum_j W_ij, i included, on the current neighbours. Source: Shao & Lo 2003; Hu & Adams 2007 (m
 /// sigma_i); Asai 2012.
@@ -85,11 +98,12 @@ void sum_density(Simulation<Dim>& simulation, Field& density);
 template <int Dim>
 void write_divergence_equations(Simulation<Dim>& simulation, Projection<Dim>& projection);
 
-/// Mean of the summation density (kg/m^dim). It takes the place of rho_0 in a source rho_0 - rho: a constant
-/// is out of reach of the Poisson equation in a periodic box, and its solver projects it out. On a lattice it
-/// is nearly all there is; taken off before, it leaves no round-off of its own size.
+/// The density (kg/m^dim) that a source rho_0 - rho is to take the summation density to: rho_0 under a free
+/// surface. Without one it is the mean of the summation density: a constant is out of reach of the Poisson
+/// equation, and its solver projects it out. On a lattice it is nearly all there is; taken off before, it
+/// leaves no round-off of its own size.
 template <int Dim>
-double mean_density(const Simulation<Dim>& simulation, const Field& density);
+double target_density(const Simulation<Dim>& simulation, const Field& density);
 
 /// Writes the equations div(grad p/rho) = (rho_0 - rho)/(rho_0 tau^2) with the summation density rho: the
 /// motion -tau^2 grad p/rho takes the particles to the density rho_0.

@@ -9,17 +9,17 @@ namespace {
 
 using projection::Projection;
 
-/// max_i |rho_0 - rho_i|/rho_0, which is |sigma_0 - sigma_i|/sigma_0 with sigma_0 = rho_0/m; with the mean of
-/// rho_i in the place of rho_0, as in the equations that take the error out (see mean_density()).
+/// max_i |rho_0 - rho_i|/rho_0, which is |sigma_0 - sigma_i|/sigma_0 with sigma_0 = rho_0/m; with
+/// target_density() in the place of rho_0, as in the equations that take the error out.
 template <int Dim>
 double largest_density_error(const Simulation<Dim>& s, const Field& density) {
     const int count = static_cast<int>(s.particles.size());
     const double* rho = density[0];
-    const double mean = projection::mean_density(s, density);
+    const double target = projection::target_density(s, density);
     double largest = 0;
 #pragma omp parallel for schedule(static) reduction(max : largest)
     for (int i = 0; i < count; ++i) {
-        largest = std::max(largest, std::abs(mean - rho[i]) / s.density);
+        largest = std::max(largest, std::abs(target - rho[i]) / s.density);
     }
     return largest;
 }
@@ -46,8 +46,8 @@ void make_density_invariant(Simulation<Dim>& s, Projection<Dim>& p, Field& densi
 }
 
 template <int Dim>
-void form_half_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p) {
-    projection::form_viscous_velocity(s, p, s.time_step / 2);
+void form_half_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p) {
+    projection::form_forced_velocity(s, p, s.time_step / 2);
 }
 
 /// Takes over u^{*,1/2} as the velocity: u^n is not needed any more.
@@ -75,16 +75,16 @@ void assemble(Simulation<Dim>& s) {
     s.add_stage("time_step", projection::choose_time_step<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
     add_surface_stage(s);
-    s.add_stage("viscosity", [shared](Simulation<Dim>& sim) {
-        form_half_viscous_velocity(sim, *shared);
+    s.add_stage(projection::forces_name(s), [shared](Simulation<Dim>& sim) {
+        form_half_forced_velocity(sim, *shared);
         take_over_velocity(sim, *shared);
     });
     s.add_stage("drift", projection::drift<Dim>);
     s.add_stage("density_invariance", [shared, &density_pressure](Simulation<Dim>& sim) {
         make_density_invariant(sim, *shared, density_pressure);
     });
-    s.add_stage("second_viscosity",
-                [shared](Simulation<Dim>& sim) { form_half_viscous_velocity(sim, *shared); });
+    s.add_stage("second_" + projection::forces_name(s),
+                [shared](Simulation<Dim>& sim) { form_half_forced_velocity(sim, *shared); });
     s.add_stage("pressure_poisson", [shared](Simulation<Dim>& sim) { make_divergence_free(sim, *shared); });
     s.add_stage("projection", [shared](Simulation<Dim>& sim) {
         projection::subtract_pressure_gradient(sim, *shared, shared->pressure, sim.time_step,

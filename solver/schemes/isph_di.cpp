@@ -24,9 +24,7 @@ void assemble(Simulation<Dim>& s) {
     s.add_stage("time_step", projection::choose_time_step<Dim>);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
     add_surface_stage(s);
-    s.add_stage("viscosity", [shared](Simulation<Dim>& sim) {
-        projection::form_viscous_velocity(sim, *shared, sim.time_step);
-    });
+    projection::add_forces_stages(s, shared);
     s.add_stage("drift", [shared](Simulation<Dim>& sim) {
         add_scaled<Dim>(sim.particles.position, sim.time_step, shared->velocity_next);
     });

@@ -187,9 +187,10 @@ void refuse_levels(const Simulation<Dim>& s, const std::string& integrator) {
 
 template <int Dim>
 void assemble(Simulation<Dim>& s) {
+    // At a free surface p is 0: nothing outside would hold a background pressure.
+    const double background = s.free_surface ? 0 : s.settings.number("background_pressure");
     const Tait tait{s.density, s.settings.number("c0_over_u") * s.reference_speed, s.settings.number("gamma"),
-                    s.settings.number("background_pressure") * s.density * s.reference_speed *
-                        s.reference_speed};
+                    background * s.density * s.reference_speed * s.reference_speed};
     const auto f = std::make_shared<Rates<Dim>>(rates(s, tait));
     const std::string& integrator = s.settings.word("integrator");
     refuse_levels(s, integrator);
@@ -269,7 +270,8 @@ const Scheme& wcsph() {
                        "gradW; taylor, (p_j - p_i) L_i gradW; hybrid_taylor, taylor, but renormalised at and "
                        "next to particles whose lowest eigenvalue of 1/L_i is below 0.97"),
              Key::word("viscosity", "morris", {"morris", "monaghan_cleary"},
-                       "morris: along u_ij; monaghan_cleary: along r_ij, with factor 2(dim+2)"),
+                       "morris: along u_ij; monaghan_cleary: along r_ij, with factor 2(dim+2); neither where "
+                       "nu = 0"),
              Key::word("integrator", "explicit", {"explicit", "predictor_corrector", "verlet"},
                        "explicit: Lee 2008, first order; predictor_corrector: Issa 2005, second order; "
                        "verlet: a leap over two steps, as in SPHysics"),
@@ -277,9 +279,11 @@ const Scheme& wcsph() {
                           "verlet: every so many steps, and where the step has changed, an Euler step"),
              Key::number("c0_over_u", 10, 1, 1e4, "1", "sound speed over the largest expected speed"),
              Key::number("gamma", 7, 1, 20, "1", "exponent of the Tait equation"),
-             Key::number("background_pressure", 0.5, 0, 1e6, "1",
-                         "constant added to p, in units of rho0 U^2; 0.5 keeps Bernoulli pressures from "
-                         "tension, which is unstable (Swegle); the papers use 0"),
+             Key::number(
+                 "background_pressure", 0.5, 0, 1e6, "1",
+                 "constant added to p, in units of rho0 U^2; 0.5 keeps Bernoulli pressures from "
+                 "tension, which is unstable (Swegle); the papers use 0, and so does a scene with a free "
+                 "surface"),
              Key::number("eta_over_h", 0, 0, 1, "1", "eta/h in the viscosity"),
              Key::number("acoustic_limit", 0.4, 1e-4, 10, "1", "dt <= this h/c0"),
              Key::number("viscous_limit", 0.125, 1e-4, 10, "1", "dt <= this h^2/nu"),

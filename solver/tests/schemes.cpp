@@ -1282,5 +1282,58 @@ TEST(PressureSolver, EndsTheRunWhereItDoesNotConverge) {
     }
 }
 
+// An inviscid fluid has no viscous stage, field or force: it moves as one of next to no viscosity does.
+TEST(AnInviscidScene, CarriesNoViscosity) {
+    for (const Scheme* scheme : schemes::all()) {
+        if (scheme->name == "isph_mls") { // takes the Laplacian from the fit that it makes for the gradients
+            continue;
+        }
+        SCOPED_TRACE(scheme->name);
+        const auto run = [&](double viscosity) {
+            auto scene = flowing_scene<2>(*scheme, {{"time_step", "1e-3"}}, 16, 0.1);
+            scene.kinematic_viscosity = viscosity;
+            scene.body_force = {0.3, -0.7};
+            scheme->assemble(scene);
+            advance(scene);
+            advance(scene);
+            return scene;
+        };
+        const auto inviscid = run(0);
+        for (const Stage<2>& stage : inviscid.stages) {
+            EXPECT_EQ(stage.name.find("viscosity"), std::string::npos) << stage.name;
+            if (stage.name.ends_with("body_force")) {
+                EXPECT_EQ(stage.pair_evaluations, 0);
+            }
+        }
+        for (const Field& field : inviscid.particles.fields()) {
+            for (const std::string& who : field.asked_by) {
+                EXPECT_EQ(who.find("viscosity"), std::string::npos) << field.name;
+            }
+        }
+        const auto nearly = run(1e-30);
+        EXPECT_LE(inviscid.work.pair_evaluations, nearly.work.pair_evaluations);
+        for (int d = 0; d < 2; ++d) {
+            for (std::size_t i = 0; i < inviscid.particles.size(); ++i) {
+                EXPECT_NEAR(inviscid.particles.velocity[d][i], nearly.particles.velocity[d][i], 1e-12);
+            }
+        }
+    }
+}
+
+// A free surface is where p = 0: a background pressure would blow the fluid apart.
+TEST(Wcsph, HasNoBackgroundPressureUnderAFreeSurface) {
+    const Scheme& wcsph = schemes::find("wcsph");
+    for (const bool surface : {false, true}) {
+        auto scene = still_scene<2>(wcsph, {{"background_pressure", "0.5"}}, 16);
+        if (surface) {
+            const Detector& detector = free_surface::find("covered_ball");
+            scene.free_surface = FreeSurface{&detector, detector.threshold(2, 2.6)};
+        }
+        wcsph.assemble(scene);
+        EXPECT_NEAR((*scene.particles.find("density"))[0][0], 1, 1e-15);
+        EXPECT_EQ((*scene.particles.find("pressure"))[0][0], surface ? 0 : 0.5);
+    }
+}
+
 } // namespace
 } // namespace sphvv::solver

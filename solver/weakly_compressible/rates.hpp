@@ -135,6 +135,9 @@ Forces<Dim> forces_with(std::string_view pressure_force) {
 template <int Dim>
 Forces<Dim> forces_of(std::string_view pressure_force, std::string_view viscosity, bool eddy) {
     using namespace viscous_forces;
+    if (viscosity == "none") {
+        return forces_with<Dim, None>(pressure_force);
+    }
     if (viscosity == "morris") {
         return eddy ? forces_with<Dim, MorrisEddy>(pressure_force) : forces_with<Dim, Morris>(pressure_force);
     }
@@ -155,29 +158,50 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
     const auto scratch = [&](const char* name, int components, const char* asked_by) -> Field& {
         return particles.field(name, components, Lifetime::scratch, asked_by);
     };
-    return {particles.field("density", 1, Lifetime::state, "continuity"),
-            particles.field("pressure", 1, Lifetime::state, "equation_of_state"),
-            pressure_force == "sigma_2" ? &scratch("pressure_over_squared_density", 1, "momentum") : nullptr,
-            scratch("specific_volume", 1, "momentum"),
-            scratch("acceleration", Dim, "momentum"),
-            scratch("density_rate", 1, "continuity"),
-            renormalised ? &scratch("renormalisation", symmetric_components<Dim>, "momentum") : nullptr,
-            hybrid ? &scratch("lowest_eigenvalue", 1, "momentum") : nullptr,
-            tait,
-            eta * eta,
-            continuity == "sigma_2"   ? Continuity::sigma_2
-            : continuity == "sigma_1" ? Continuity::sigma_1
-                                      : Continuity::renormalised,
-            forces_of<Dim>(pressure_force, s.settings.word("viscosity"), s.turbulence.has_value()),
-            hybrid ? 2 : 1,
-            s.turbulence ? &scratch("eddy_viscosity", 1, "momentum") : nullptr};
+    return {
+        particles.field("density", 1, Lifetime::state, "continuity"),
+        particles.field("pressure", 1, Lifetime::state, "equation_of_state"),
+        pressure_force == "sigma_2" ? &scratch("pressure_over_squared_density", 1, "momentum") : nullptr,
+        scratch("specific_volume", 1, "momentum"),
+        scratch("acceleration", Dim, "momentum"),
+        scratch("density_rate", 1, "continuity"),
+        renormalised ? &scratch("renormalisation", symmetric_components<Dim>, "momentum") : nullptr,
+        hybrid ? &scratch("lowest_eigenvalue", 1, "momentum") : nullptr,
+        tait,
+        eta * eta,
+        continuity == "sigma_2"   ? Continuity::sigma_2
+        : continuity == "sigma_1" ? Continuity::sigma_1
+                                  : Continuity::renormalised,
+        forces_of<Dim>(pressure_force,
+                       s.kinematic_viscosity == 0 && !s.turbulence ? "none" : s.settings.word("viscosity"),
+                       s.turbulence.has_value()),
+        hybrid ? 2 : 1,
+        s.turbulence ? &scratch("eddy_viscosity", 1, "momentum") : nullptr};
+}
+
+/// Density and pressure of images: those of the particle, and where the walls hold the fluid up against the
+/// body force f, those of a fluid at rest that goes on from the particle to the image.
+template <int Dim>
+void fill_walls_state(const Simulation<Dim>& s, Rates<Dim>& f) {
+    s.fill_walls(f.density, Parity::even);
+    s.fill_walls(f.pressure, Parity::even);
+    if (s.images.empty() || s.wall_pressure_gradient().isZero(0)) {
+        return;
+    }
+    const std::vector<double> difference = s.wall_pressure_differences();
+    for (std::size_t k = 0; k < difference.size(); ++k) {
+        if (difference[k] != 0) { // not along the wall
+            const std::size_t image = s.particles.size() + k;
+            f.density[0][image] = f.tait.density_below(f.density[0][image], difference[k] / s.density);
+            f.pressure[0][image] = f.tait.pressure(f.density[0][image]);
+        }
+    }
 }
 
 /// 1/rho and, where it is read, p/rho^2.
 template <int Dim>
 void update_volumes(const Simulation<Dim>& s, Rates<Dim>& f) {
-    s.fill_walls(f.density, Parity::even);
-    s.fill_walls_pressure(f.pressure);
+    fill_walls_state(s, f);
     const int count = static_cast<int>(s.particles.with_images());
     const double* rho = f.density[0];
     double* volume = f.specific_volume[0];

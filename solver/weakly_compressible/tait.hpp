@@ -19,6 +19,16 @@ struct Tait {
         return density * std::pow(1 + (p - background) / stiffness(), 1 / gamma);
     }
 
+    /// Density of a fluid at rest where the potential of the body force is lower by `work` (m2/s2) than where
+    /// it is rho: dp/rho = dw integrates to (rho/rho0)^(gamma-1) + (gamma - 1) w/c0^2, and for gamma = 1 to
+    /// rho exp(w/c0^2).
+    double density_below(double rho, double work) const {
+        const double s = work / (sound_speed * sound_speed);
+        return gamma == 1 ? rho * std::exp(s)
+                          : density * std::pow(std::pow(rho / density, gamma - 1) + (gamma - 1) * s,
+                                               1 / (gamma - 1));
+    }
+
     /// Elastic energy e per mass (J/kg), zero at rho0. By the first law a parcel that keeps its entropy has
     /// de = -p d(1/rho) = (p/rho^2) drho. With x = rho/rho0, B the stiffness and p = B (x^gamma - 1) + p_b,
     ///   rho0 e = integral from 1 to x of (B s^(gamma-2) + (p_b - B) s^-2) ds
