@@ -98,8 +98,14 @@ void hold_wall_particles(Simulation<Dim>& simulation) {
     Particles<Dim>& particles = simulation.particles;
     const std::size_t fluid = particles.fluid_size();
     for (std::size_t i = fluid; i < particles.size(); ++i) {
+        const WallParticle<Dim>& particle = simulation.wall_particles[particles.id[i] - fluid];
+        const auto& displacement = simulation.walls[particle.wall].displacement;
+        Vector<Dim> x = particle.position;
+        if (displacement) {
+            x += displacement(simulation.positions_time);
+        }
         for (int d = 0; d < Dim; ++d) {
-            particles.position[d][i] = simulation.wall_particles[particles.id[i] - fluid].position[d];
+            particles.position[d][i] = x[d];
         }
     }
     simulation.fill_walls(particles.velocity, Parity::velocity);
@@ -111,6 +117,7 @@ template <int Dim>
 void advance(Simulation<Dim>& simulation) {
     using Clock = std::chrono::steady_clock;
     ++simulation.step;
+    simulation.positions_time = simulation.time;
     for (Stage<Dim>& stage : simulation.stages) {
         const auto begin = Clock::now();
         const std::int64_t pairs = simulation.work.pair_evaluations;
@@ -118,11 +125,12 @@ void advance(Simulation<Dim>& simulation) {
         stage.pair_evaluations += simulation.work.pair_evaluations - pairs;
         stage.seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     }
-    hold_wall_particles(simulation);
     simulation.time += simulation.time_step;
     if (simulation.end_time - simulation.time < 1e-9 * simulation.time_step) {
         simulation.time = simulation.end_time;
     }
+    simulation.positions_time = simulation.time;
+    hold_wall_particles(simulation);
     simulation.work.particle_steps += static_cast<std::int64_t>(simulation.particles.size());
     check_survival(simulation);
 }
@@ -243,10 +251,10 @@ void make_images_and_list(Simulation<Dim>& simulation, double skin) {
     Particles<Dim>& particles = simulation.particles;
     const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
     if (!simulation.walls.empty() && simulation.wall_method == WallMethod::mirror) {
-        simulation.images.mirror(simulation.walls, radius, simulation.time, particles);
+        simulation.images.mirror(simulation.walls, radius, simulation.positions_time, particles);
     } else if (!simulation.walls.empty() && simulation.wall_method == WallMethod::dummy) {
         simulation.images.stack(simulation.walls, simulation.wall_particles, simulation.particle_spacing,
-                                radius, simulation.time, particles);
+                                radius, simulation.positions_time, particles);
     }
     simulation.neighbours.build(box_with_images(simulation, radius), *simulation.kernel,
                                 simulation.smoothing_length, skin, constant_arrays<Dim>(particles.position),

@@ -98,7 +98,8 @@ struct Simulation {
     std::array<double, Dim> body_force{}; ///< m/s2, the same everywhere
     double particle_mass = 0;             ///< kg (per metre of depth in 2-D)
 
-    double time = 0;                 ///< s
+    double time = 0;                 ///< s, at the start of the step in progress
+    double positions_time = 0;       ///< s, to which the positions belong: where walls that move are
     double end_time = 0;             ///< s
     double time_step = 0;            ///< s, of the step in progress
     double maximum_acceleration = 0; ///< m/s2, of the last step

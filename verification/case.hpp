@@ -86,8 +86,10 @@ struct SceneRecord;
 /// A number of a scene at the end of a run, held against a quantity of the exact solution: one more line of
 /// the ladder beside the fields.
 struct Measure {
-    std::string name; ///< also of the solution's quantity
+    std::string name;
     std::function<double(const SceneRecord&, const solver::Simulation<2>&)> ours;
+    std::string quantity{}; ///< of the solution; none: that of the same name
+    analytic::Vector at{};  ///< m, where the quantity is taken
 };
 
 /// What a case does differently from the scene that follows from its solution. Every hook may be left out.
@@ -131,6 +133,8 @@ struct Case {
     int columns = 0;
     /// Parameters of the solution that are no keys: hooks.values derives them from other settings.
     std::vector<std::string> derived{};
+    /// Sides of the solution's domain, none of them its boundary, at which a smooth wall closes the scene.
+    std::vector<analytic::Face> closed{};
     bool starts_at_rest = false; ///< although the solution is that of a later time, or has no start
     /// Direction of the profiles that are drawn, and the component of the velocity in them; none if negative.
     int profile_direction = -1;

@@ -226,7 +226,8 @@ Deviation compare(const SceneRecord& scene, const solver::Simulation<Dim>& simul
     if constexpr (Dim == 2) {
         for (const Measure& measure : scene.flow->measures) {
             const double theirs =
-                analytic::quantity(exact.solution, measure.name, exact.values)({}, simulation.time);
+                analytic::quantity(exact.solution, measure.quantity.empty() ? measure.name : measure.quantity,
+                                   exact.values)(measure.at, simulation.time);
             deviation.errors.push_back(
                 {measure.name, norms_of_a_number(measure.ours(scene, simulation), theirs)});
         }

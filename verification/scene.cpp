@@ -53,12 +53,22 @@ bool is_wall(const analytic::Boundary& boundary) {
     return boundary.kind != analytic::BoundaryKind::free_surface;
 }
 
+/// Those of the solution, and the smooth walls that close the scene.
+std::vector<analytic::Boundary> boundaries_with(const Case& flow, const analytic::Values& values) {
+    const analytic::Solution& solution = analytic::solutions::find(flow.solution);
+    std::vector<analytic::Boundary> all = analytic::boundaries(solution, values);
+    for (const analytic::Face& face : flow.closed) {
+        all.push_back(analytic::flat_boundary("end wall", analytic::BoundaryKind::impermeable,
+                                              solution.domain(values), face));
+    }
+    return all;
+}
+
 /// They do not depend on the values of the parameters.
 Ends ends_of(const SceneRecord& scene) {
     const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
     Ends ends{{{0.5, 0.5}, {0.5, 0.5}, {0.5, 0.5}}};
-    for (const analytic::Boundary& boundary :
-         analytic::boundaries(solution, analytic::resolve(solution, {}))) {
+    for (const analytic::Boundary& boundary : boundaries_with(*scene.flow, analytic::resolve(solution, {}))) {
         if (boundary.face) {
             double& end = ends[boundary.face->direction][boundary.face->high ? 1 : 0];
             if (is_wall(boundary)) {
@@ -77,7 +87,7 @@ struct Layout {
 };
 
 std::vector<analytic::Boundary> boundaries_of(const SceneRecord& scene) {
-    return analytic::boundaries(analytic::solutions::find(scene.flow->solution), solution_values(scene));
+    return boundaries_with(*scene.flow, solution_values(scene));
 }
 
 /// The domain that the lattice fills.
@@ -238,14 +248,28 @@ std::vector<solver::Wall<Dim>> walls_of(const SceneRecord& scene) {
         const auto distance = [boundary](const solver::Vector<Dim>& x) {
             return boundary.distance(analytic_point<Dim>(x));
         };
-        walls.push_back({.name = std::string(boundary.name),
-                         .slip = boundary.kind == analytic::BoundaryKind::no_slip ? solver::Slip::no_slip
-                                                                                  : solver::Slip::free_slip,
-                         .distance = distance,
-                         .normal = solver::shapes::gradient_of<Dim>(distance, step),
-                         .velocity = [boundary](const solver::Vector<Dim>& x, double t) {
-                             return solver_vector<Dim>(boundary.velocity(analytic_point<Dim>(x), t));
-                         }});
+        solver::Wall<Dim> wall{
+            .name = std::string(boundary.name),
+            .slip = boundary.kind == analytic::BoundaryKind::no_slip ? solver::Slip::no_slip
+                                                                     : solver::Slip::free_slip,
+            .distance = distance,
+            .normal = solver::shapes::gradient_of<Dim>(distance, step),
+            .velocity =
+                [boundary](const solver::Vector<Dim>& x, double t) {
+                    return solver_vector<Dim>(boundary.velocity(analytic_point<Dim>(x), t));
+                },
+            .displacement = {}};
+        if (boundary.face) {
+            // A plane moves along its normal with a constant velocity, if at all.
+            solver::Vector<Dim> normal_velocity = solver::Vector<Dim>::Zero();
+            normal_velocity[boundary.face->direction] = boundary.velocity({}, 1)[boundary.face->direction];
+            if (!normal_velocity.isZero(0)) {
+                wall.displacement = [normal_velocity](double t) {
+                    return solver::Vector<Dim>(t * normal_velocity);
+                };
+            }
+        }
+        walls.push_back(std::move(wall));
     }
     return walls;
 }

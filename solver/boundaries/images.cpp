@@ -61,9 +61,10 @@ void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, double
     std::vector<Vector<Dim>> positions;
     for (const Wall<Dim>& wall : walls) {
         const auto reflect = [&](int source, int particle, const Vector<Dim>& x) {
-            const double d = wall.distance(x);
+            const Vector<Dim> start = wall.at_start(x, t);
+            const double d = wall.distance(start);
             if (std::abs(d) < radius) {
-                const Vector<Dim> n = wall.normal(x);
+                const Vector<Dim> n = wall.normal(start);
                 const Vector<Dim> foot = x - d * n;
                 positions.push_back(foot - d * n);
                 add(source, particle, {n, wall.velocity(foot, t), wall.slip});
@@ -92,8 +93,9 @@ void Images<Dim>::stack(std::span<const Wall<Dim>> walls, std::span<const WallPa
         const Wall<Dim>& wall = walls[particle.wall];
         const Vector<Dim> n = wall.normal(particle.position);
         for (int layer = 1; layer * dx < radius; ++layer) {
-            positions.push_back(particle.position - layer * dx * n);
-            add(i, i, {n, wall.velocity(particle.position, t), wall.slip, true});
+            const Vector<Dim> x = vector_at<Dim>(particles.position, i);
+            positions.push_back(x - layer * dx * n);
+            add(i, i, {n, wall.velocity(x, t), wall.slip, true});
         }
     }
     place(positions, particles);

@@ -23,16 +23,23 @@ struct Wall {
     std::function<double(const Vector<Dim>& x)> distance;
     /// grad distance: unit vector, into the fluid.
     std::function<Vector<Dim>(const Vector<Dim>& x)> normal;
-    /// Of the wall's material at its point x, m/s; along the wall, so that the shape stays where it is.
+    /// Of the wall's material at its point x, m/s.
     std::function<Vector<Dim>(const Vector<Dim>& x, double t)> velocity;
+    /// By how much the whole shape has moved since t = 0, m; none: it stays, and moves along itself at most.
+    std::function<Vector<Dim>(double t)> displacement{};
+
+    /// Where the shape was at t = 0, seen from a point x at the time t.
+    Vector<Dim> at_start(const Vector<Dim>& x, double t) const {
+        return displacement ? Vector<Dim>(x - displacement(t)) : x;
+    }
 };
 
-/// A particle that is part of a wall: it stays at its position and has the velocity of the wall there. Every
-/// other quantity of it evolves as that of a fluid particle does.
+/// A particle that is part of a wall: it stays at its place on the wall and has the wall's velocity there.
+/// Every other quantity of it evolves as that of a fluid particle does.
 template <int Dim>
 struct WallParticle {
-    int wall; ///< index of the wall
-    Vector<Dim> position;
+    int wall;             ///< index of the wall
+    Vector<Dim> position; ///< m, at t = 0
 };
 
 /// What fills the support of a particle beyond a wall.

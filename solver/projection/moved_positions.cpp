@@ -33,7 +33,10 @@ template <int Dim>
 void add_stages_at_moved_positions(Simulation<Dim>& s) {
     const auto projection = make_projection(s, Density::constant);
     s.add_stage("time_step", choose_time_step<Dim>);
-    s.add_stage("drift", drift<Dim>);
+    s.add_stage("drift", [](Simulation<Dim>& sim) {
+        drift(sim);
+        sim.positions_time = sim.time + sim.time_step;
+    });
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });
     add_surface_stage(s);
     add_forces_stages(s, projection);
