@@ -88,9 +88,14 @@ struct Subject {
 
 const std::vector<Subject>& subjects() {
     static const std::vector<Subject> all{
-        {"cases", cases},         {"schemes", schemes},
-        {"operators", operators}, {"kernels", [] { return entries_of(solver::kernels::all()); }},
-        {"studies", studies},     {"solutions", [] { return entries_of(analytic::solutions::all()); }},
+        {"cases", cases},
+        {"schemes", schemes},
+        {"operators", operators},
+        {"kernels", [] { return entries_of(solver::kernels::all()); }},
+        {"turbulence", [] { return entries_of(solver::turbulence::all()); }},
+        {"wall_functions", [] { return entries_of(solver::wall_functions::all()); }},
+        {"studies", studies},
+        {"solutions", [] { return entries_of(analytic::solutions::all()); }},
     };
     return all;
 }

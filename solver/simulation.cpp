@@ -92,11 +92,13 @@ void check_survival(const Simulation<Dim>& simulation) {
     }
 }
 
-/// Back to where they belong, as they take part in every step like the others.
+/// Back to where they belong, as they take part in every step like the others. A wall function may have let
+/// them slide along the wall.
 template <int Dim>
 void hold_wall_particles(Simulation<Dim>& simulation) {
     Particles<Dim>& particles = simulation.particles;
     const std::size_t fluid = particles.fluid_size();
+    const Field* moved = simulation.wall_friction ? particles.find("wall_displacement") : nullptr;
     for (std::size_t i = fluid; i < particles.size(); ++i) {
         const WallParticle<Dim>& particle = simulation.wall_particles[particles.id[i] - fluid];
         const auto& displacement = simulation.walls[particle.wall].displacement;
@@ -106,6 +108,9 @@ void hold_wall_particles(Simulation<Dim>& simulation) {
         }
         for (int d = 0; d < Dim; ++d) {
             particles.position[d][i] = x[d];
+        }
+        for (int d = 0; d < Dim && moved != nullptr; ++d) {
+            particles.position[d][i] += (*moved)[d][i];
         }
     }
     simulation.fill_walls(particles.velocity, Parity::velocity);

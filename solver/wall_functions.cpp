@@ -110,12 +110,11 @@ public:
           imposed(friction.settings.word("edge_velocity") == "imposed"),
           imposed_u_star(friction.settings.number("friction_velocity")) {}
 
-    Vector<Dim> operator()(const WallParticle<Dim>& particle, Sampling<Dim>& sampled) const {
-        const Wall<Dim>& wall = s.walls[particle.wall];
-        const Vector<Dim> n = wall.normal(particle.position);
-        const Vector<Dim> foot = particle.position - wall.distance(particle.position) * n;
+    Vector<Dim> operator()(const Wall<Dim>& wall, const Vector<Dim>& at, Sampling<Dim>& sampled) const {
+        const Vector<Dim> n = wall.normal(at);
+        const Vector<Dim> foot = at - wall.distance(at) * n;
         const Vector<Dim> u = sampled(foot + distance * n) - wall.velocity(foot, s.time);
-        const Vector<Dim> along = u - u.dot(n) * n;
+        Vector<Dim> along = u - u.dot(n) * n;
         const double speed = along.norm();
         if (speed == 0) {
             return along;
@@ -147,9 +146,9 @@ void update_edge_velocity(Simulation<Dim>& s, Field& density, Field& edge_veloci
         Sampling<Dim> sampled(s, density[0], shepard);
 #pragma omp for schedule(static)
         for (int i = fluid; i < count; ++i) {
-            const WallParticle<Dim>& particle = s.wall_particles[s.particles.id[i] - fluid];
-            if (s.walls[particle.wall].slip == Slip::no_slip) {
-                const Vector<Dim> u = at_edge(particle, sampled);
+            const Wall<Dim>& wall = s.walls[s.wall_particles[s.particles.id[i] - fluid].wall];
+            if (wall.slip == Slip::no_slip) {
+                const Vector<Dim> u = at_edge(wall, vector_at<Dim>(s.particles.position, i), sampled);
                 for (int d = 0; d < Dim; ++d) {
                     edge_velocity[d][i] = u[d];
                 }
@@ -167,8 +166,9 @@ void add_wall_function_stage(Simulation<Dim>& s) {
         return;
     }
     if (s.wall_method == WallMethod::mirror || s.particles.size() == s.particles.fluid_size()) {
-        throw UserError("a wall function needs wall particles with layers behind them; accepted wall method: "
-                        "dummy");
+        throw UserError(
+            "a wall function needs wall particles with layers behind them; accepted wall methods: "
+            "dummy, fixed");
     }
     Field& density = s.particles.field("density", 1, Lifetime::state, "wall_function");
     Field& edge = s.particles.field("edge_velocity", Dim, Lifetime::state, "wall_function");
@@ -176,8 +176,22 @@ void add_wall_function_stage(Simulation<Dim>& s) {
                 [&density, &edge](Simulation<Dim>& sim) { update_edge_velocity(sim, density, edge); });
 }
 
+template <int Dim>
+void add_wall_transport_stage(Simulation<Dim>& s) {
+    if (!s.wall_friction || s.wall_friction->settings.word("edge_motion") == "none") {
+        return;
+    }
+    Field& velocity = s.particles.field("edge_velocity", Dim, Lifetime::state, "wall_function");
+    Field& moved = s.particles.field("wall_displacement", Dim, Lifetime::state, "wall_function");
+    s.add_stage("wall_transport", [&velocity, &moved](Simulation<Dim>& sim) {
+        add_scaled<Dim>(moved, sim.time_step, velocity);
+    });
+}
+
 template void add_wall_function_stage(Simulation<2>&);
 template void add_wall_function_stage(Simulation<3>&);
+template void add_wall_transport_stage(Simulation<2>&);
+template void add_wall_transport_stage(Simulation<3>&);
 
 namespace wall_functions {
 const WallFunction& find(std::string_view name) {
@@ -194,6 +208,8 @@ std::vector<Key> keys(const WallFunction& function) {
         Key::number("friction_velocity", 0.05, 1e-12, 1e6, "m/s", "u* where something is imposed"),
         Key::number("sampling_distance_over_h", 2, 0, 100, "1",
                     "Delta/h, of M from the wall particle along the normal; none is published"),
+        Key::word("edge_motion", "transported", {"transported", "none"},
+                  "of wall particles: transported, along flat walls at the velocity of the edge; none"),
         Key::word("sampling", "shepard", {"shepard", "plain"},
                   "velocity at M: plain, sum V u W; shepard, divided by sum V W")};
     result.insert(result.end(), function.keys.begin(), function.keys.end());

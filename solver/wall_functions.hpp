@@ -57,6 +57,13 @@ struct WallFriction {
 template <int Dim>
 void add_wall_function_stage(Simulation<Dim>& simulation);
 
+/// Adds the stage that lets wall particles slide along the wall at the velocity of the edge (state field
+/// `wall_displacement`, m), to come last in a step: Issa's are transported. Wall particles that stay where
+/// they are, while the sums take them for moving, are obstacles: their pressure drags at the rows above. For
+/// flat walls; does nothing with edge_motion = none.
+template <int Dim>
+void add_wall_transport_stage(Simulation<Dim>& simulation);
+
 namespace wall_functions {
 /// Every wall function in solver/wall_functions/, in the order of the file names.
 std::span<const WallFunction* const> all();

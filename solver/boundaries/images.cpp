@@ -89,13 +89,12 @@ void Images<Dim>::stack(std::span<const Wall<Dim>> walls, std::span<const WallPa
     std::vector<Vector<Dim>> positions;
     const auto fluid = static_cast<int>(particles.fluid_size());
     for (int i = fluid; i < static_cast<int>(first_); ++i) {
-        const WallParticle<Dim>& particle = of[particles.id[i] - fluid];
-        const Wall<Dim>& wall = walls[particle.wall];
-        const Vector<Dim> n = wall.normal(particle.position);
+        const Wall<Dim>& wall = walls[of[particles.id[i] - fluid].wall];
+        const auto at = vector_at<Dim>(particles.position, i);
+        const Vector<Dim> n = wall.normal(wall.at_start(at, t));
         for (int layer = 1; layer * dx < radius; ++layer) {
-            const Vector<Dim> x = vector_at<Dim>(particles.position, i);
-            positions.push_back(x - layer * dx * n);
-            add(i, i, {n, wall.velocity(x, t), wall.slip, true});
+            positions.push_back(at - layer * dx * n);
+            add(i, i, {n, wall.velocity(at, t), wall.slip, true});
         }
     }
     place(positions, particles);

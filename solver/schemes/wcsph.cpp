@@ -63,6 +63,7 @@ void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& 
     s.add_stage("drift", [](Simulation<Dim>& sim) {
         add_scaled<Dim>(sim.particles.position, sim.time_step, sim.particles.velocity);
     });
+    add_wall_transport_stage(s);
 }
 
 /// Issa 2005 §3, scheme PC: X^{n+1/2} = X^n + (dt/2) R(X^n); X^{n+1} = X^n + dt R(X^{n+1/2}); second order.

@@ -193,6 +193,29 @@ TEST(EdgeVelocity, IsAlongTheFlowAndRelativeToTheWall) {
     }
 }
 
+// Wall particles, and what lies behind them, slide along the bed as the edge does; with edge_motion = none
+// they stay.
+TEST(EdgeVelocity, TransportsTheWallParticles) {
+    for (const char* motion : {"transported", "none"}) {
+        const WallFriction wall = friction("smooth", {{"edge", "0.0025"},
+                                                      {"edge_velocity", "imposed"},
+                                                      {"friction_velocity", "0.05"},
+                                                      {"edge_motion", motion}});
+        auto scene = channel(20, wall, 2.5e-6, 0.05);
+        for (int step = 0; step < 5; ++step) {
+            advance(scene);
+        }
+        const double u = motion == std::string("none") ? 0 : wall.law(2.5e-6).velocity(0.0025, 0.05);
+        for (std::size_t i = scene.particles.fluid_size(); i < scene.particles.size(); ++i) {
+            const auto& start = scene.wall_particles[scene.particles.id[i] - scene.particles.fluid_size()];
+            EXPECT_EQ(scene.particles.position[1][i], 0);
+            const double moved = scene.particles.position[0][i] - start.position[0];
+            EXPECT_NEAR(moved - std::round(moved), u * scene.time, 1e-12);
+        }
+        EXPECT_GT(scene.time, 0.01);
+    }
+}
+
 TEST(EdgeVelocity, NeedsSomethingThatCarriesIt) {
     auto scene = still_scene<2>(schemes::find("wcsph"), {}, 10);
     scene.walls = {plane<2>("bed", {0, 0}, {0, 1}, Slip::no_slip)};
