@@ -394,6 +394,7 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
             std::min(record.minimum_spacing, simulation.neighbours.minimum_distance() / record.dx);
         if (record.survived && simulation.time >= next_mark * simulation.end_time / marks) {
             record.history.push_back(compare(scene, simulation));
+            record.history.back().minimum_spacing = record.minimum_spacing;
             next_mark = static_cast<int>(simulation.time / simulation.end_time * marks) + 1;
         }
         if (record.survived && progress) {
@@ -408,6 +409,7 @@ RunRecord step_to_end(solver::Simulation<Dim>& simulation, const SceneRecord& sc
     record.budget = budget_since(start, simulation, *scene.scheme);
     if (record.history.empty() || record.history.back().time < simulation.time) {
         record.history.push_back(compare(scene, simulation));
+        record.history.back().minimum_spacing = record.minimum_spacing;
     }
     const Deviation& end = record.history.back();
     record.maximum_speed_error = end.maximum_speed / end.maximum_speed_exact - 1;

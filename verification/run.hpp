@@ -45,6 +45,7 @@ struct Deviation {
     double maximum_speed_exact = 0; ///< m/s, at the particles
     double energy_error =
         0; ///< kinetic energy over the exact one, minus 1; NaN where the solution tells none
+    double minimum_spacing = 0; ///< smallest pair distance / dx until then
 
     /// Norms of that name; nullptr where it is not compared.
     const Norms* find(std::string_view name) const;
