@@ -123,6 +123,7 @@ void advance(Simulation<Dim>& simulation) {
     using Clock = std::chrono::steady_clock;
     ++simulation.step;
     simulation.positions_time = simulation.time;
+    simulation.in_step = true;
     for (Stage<Dim>& stage : simulation.stages) {
         const auto begin = Clock::now();
         const std::int64_t pairs = simulation.work.pair_evaluations;
@@ -135,6 +136,7 @@ void advance(Simulation<Dim>& simulation) {
         simulation.time = simulation.end_time;
     }
     simulation.positions_time = simulation.time;
+    simulation.in_step = false;
     hold_wall_particles(simulation);
     simulation.work.particle_steps += static_cast<std::int64_t>(simulation.particles.size());
     check_survival(simulation);
@@ -186,7 +188,7 @@ void Simulation<Dim>::fill_walls(Field& field, Parity parity) const {
          ++i) {
         const WallParticle<Dim>& particle = wall_particles[particles.id[i] - fluid];
         const Vector<Dim> value = parity == Parity::velocity
-                                      ? walls[particle.wall].velocity(particle.position, time)
+                                      ? walls[particle.wall].velocity(particle.position, wall_times().end)
                                       : Vector<Dim>(Vector<Dim>::Zero());
         for (int d = 0; d < Dim; ++d) {
             field[d][i] = value[d];
@@ -199,32 +201,43 @@ void Simulation<Dim>::fill_walls(Field& field, Parity parity) const {
 }
 
 template <int Dim>
-Vector<Dim> Simulation<Dim>::wall_pressure_gradient() const {
-    Vector<Dim> force = Vector<Dim>::Zero();
-    if (wall_pressure == WallPressure::hydrostatic) {
-        for (int d = 0; d < Dim; ++d) {
-            force[d] = density * body_force[d];
-        }
-    }
-    return force;
+WallTimes Simulation<Dim>::wall_times() const {
+    return {positions_time, time, in_step ? time + time_step : time};
+}
+
+template <int Dim>
+bool Simulation<Dim>::has_wall_pressure_gradient() const {
+    const auto moves = [](const Wall<Dim>& wall) { return static_cast<bool>(wall.displacement); };
+    return wall_pressure == WallPressure::inertial && !walls.empty() &&
+           (body_force != std::array<double, Dim>{} || std::ranges::any_of(walls, moves));
 }
 
 template <int Dim>
 void Simulation<Dim>::fill_walls_forced(Field& field, double dt) const {
     fill_walls(field, Parity::velocity);
-    const Vector<Dim> share = dt / density * wall_pressure_gradient();
+    if (!has_wall_pressure_gradient()) {
+        return;
+    }
+    const Vector<Dim> share = dt * Eigen::Map<const Vector<Dim>>(body_force.data());
     // The pressure takes it off again, of wall particles as of the fluid.
-    for (std::size_t i = particles.fluid_size(); i < particles.size(); ++i) {
+    const std::size_t fluid = particles.fluid_size();
+    for (std::size_t i = fluid; i < particles.size(); ++i) {
+        const WallParticle<Dim>& particle = wall_particles[particles.id[i] - fluid];
+        const Vector<Dim> own =
+            share - dt * walls[particle.wall].acceleration(particle.position, wall_times());
         for (int d = 0; d < Dim; ++d) {
-            field[d][i] += share[d];
+            field[d][i] += own[d];
         }
     }
-    images.fill(field, Parity::velocity, share);
+    images.fill(field, Parity::velocity, share, dt);
 }
 
 template <int Dim>
 std::vector<double> Simulation<Dim>::wall_pressure_differences() const {
-    return images.differences(wall_pressure_gradient(), particles.position);
+    if (!has_wall_pressure_gradient()) {
+        return std::vector<double>(images.size(), 0.0);
+    }
+    return images.differences(Eigen::Map<const Vector<Dim>>(body_force.data()), density, particles.position);
 }
 
 template <int Dim>
@@ -256,10 +269,10 @@ void make_images_and_list(Simulation<Dim>& simulation, double skin) {
     Particles<Dim>& particles = simulation.particles;
     const double radius = simulation.kernel->support * simulation.smoothing_length * (1 + skin);
     if (!simulation.walls.empty() && simulation.wall_method == WallMethod::mirror) {
-        simulation.images.mirror(simulation.walls, radius, simulation.positions_time, particles);
+        simulation.images.mirror(simulation.walls, radius, simulation.wall_times(), particles);
     } else if (!simulation.walls.empty() && simulation.wall_method == WallMethod::dummy) {
         simulation.images.stack(simulation.walls, simulation.wall_particles, simulation.particle_spacing,
-                                radius, simulation.positions_time, particles);
+                                radius, simulation.wall_times(), particles);
     }
     simulation.neighbours.build(box_with_images(simulation, radius), *simulation.kernel,
                                 simulation.smoothing_length, skin, constant_arrays<Dim>(particles.position),
@@ -449,8 +462,9 @@ std::array<double, Dim> momentum(const Simulation<Dim>& simulation) {
     template void Simulation<Dim>::fill_walls(Field&, Parity) const;                                         \
     template void Simulation<Dim>::fill_walls_forced(Field&, double) const;                                  \
     template void Simulation<Dim>::fill_walls_pressure(Field&) const;                                        \
+    template bool Simulation<Dim>::has_wall_pressure_gradient() const;                                       \
+    template WallTimes Simulation<Dim>::wall_times() const;                                                  \
     template std::vector<double> Simulation<Dim>::wall_pressure_differences() const;                         \
-    template Vector<Dim> Simulation<Dim>::wall_pressure_gradient() const;                                    \
     template void advance(Simulation<Dim>&);                                                                 \
     template double even_step(const Simulation<Dim>&, double);                                               \
     template void wrap_positions(Simulation<Dim>&);                                                          \

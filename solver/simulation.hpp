@@ -80,7 +80,7 @@ struct Simulation {
     /// What the wall particles are, in the order of their identities.
     std::vector<WallParticle<Dim>> wall_particles;
     WallMethod wall_method = WallMethod::mirror;
-    WallPressure wall_pressure = WallPressure::hydrostatic;
+    WallPressure wall_pressure = WallPressure::inertial;
     Images<Dim> images; ///< of particles near walls, made with the neighbour list
     Settings settings;  ///< of the scheme
     const Kernel* kernel = nullptr;
@@ -100,6 +100,7 @@ struct Simulation {
 
     double time = 0;                 ///< s, at the start of the step in progress
     double positions_time = 0;       ///< s, to which the positions belong: where walls that move are
+    bool in_step = false;            ///< a time step has been chosen, and its end not been reached
     double end_time = 0;             ///< s
     double time_step = 0;            ///< s, of the step in progress
     double maximum_acceleration = 0; ///< m/s2, of the last step
@@ -129,8 +130,9 @@ struct Simulation {
     void fill_walls_pressure(Field& pressure) const;
     /// By how much the pressure of every image differs from that of its particle, Pa.
     std::vector<double> wall_pressure_differences() const;
-    /// rho f where the walls' pressure is hydrostatic, Pa/m.
-    Vector<Dim> wall_pressure_gradient() const;
+    /// Whether walls change the pressure from a particle to its images at all.
+    bool has_wall_pressure_gradient() const;
+    WallTimes wall_times() const;
     /// Books `sweeps` visits of every pair in the neighbour list.
     void count_sweeps(int sweeps) { work.pair_evaluations += sweeps * neighbours.pairs(); }
 };

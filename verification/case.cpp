@@ -57,6 +57,9 @@ void add_boundary_keys(const Case& c, std::vector<Key>& keys) {
                                  "and a row of wall particles on the wall; dummy, that row and layers behind "
                                  "it with its velocity and pressure; fixed, that row and more wall particles "
                                  "behind it, each with a density of its own"));
+        keys.push_back(Key::word("wall_pressure", "inertial", {"inertial", "even"},
+                                 "pressure gradient normal to a wall: inertial, rho (f - a).n with the body "
+                                 "force f and the wall's acceleration a; even, 0, as published"));
     }
     if (has_free_surface(c)) {
         keys.push_back(Key::word("surface_detector", "covered_ball", free_surface_detectors(),

@@ -248,6 +248,12 @@ std::vector<solver::Wall<Dim>> walls_of(const SceneRecord& scene) {
         const auto distance = [boundary](const solver::Vector<Dim>& x) {
             return boundary.distance(analytic_point<Dim>(x));
         };
+        // A plane moves along its normal with a constant velocity, if at all; until t = 0 it is at rest.
+        solver::Vector<Dim> normal_velocity = solver::Vector<Dim>::Zero();
+        if (boundary.face) {
+            normal_velocity[boundary.face->direction] = boundary.velocity({}, 1)[boundary.face->direction];
+        }
+        const bool moves = !normal_velocity.isZero(0);
         solver::Wall<Dim> wall{
             .name = std::string(boundary.name),
             .slip = boundary.kind == analytic::BoundaryKind::no_slip ? solver::Slip::no_slip
@@ -255,19 +261,15 @@ std::vector<solver::Wall<Dim>> walls_of(const SceneRecord& scene) {
             .distance = distance,
             .normal = solver::shapes::gradient_of<Dim>(distance, step),
             .velocity =
-                [boundary](const solver::Vector<Dim>& x, double t) {
-                    return solver_vector<Dim>(boundary.velocity(analytic_point<Dim>(x), t));
+                [boundary, moves](const solver::Vector<Dim>& x, double t) {
+                    return moves && t <= 0 ? solver::Vector<Dim>(solver::Vector<Dim>::Zero())
+                                           : solver_vector<Dim>(boundary.velocity(analytic_point<Dim>(x), t));
                 },
             .displacement = {}};
-        if (boundary.face) {
-            // A plane moves along its normal with a constant velocity, if at all.
-            solver::Vector<Dim> normal_velocity = solver::Vector<Dim>::Zero();
-            normal_velocity[boundary.face->direction] = boundary.velocity({}, 1)[boundary.face->direction];
-            if (!normal_velocity.isZero(0)) {
-                wall.displacement = [normal_velocity](double t) {
-                    return solver::Vector<Dim>(t * normal_velocity);
-                };
-            }
+        if (moves) {
+            wall.displacement = [normal_velocity](double t) {
+                return solver::Vector<Dim>(t * normal_velocity);
+            };
         }
         walls.push_back(std::move(wall));
     }
@@ -536,6 +538,9 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
     simulation.walls = walls_of<Dim>(scene);
     simulation.wall_particles = wall_particles;
     if (scene.case_settings.has("wall_method")) {
+        simulation.wall_pressure = scene.case_settings.word("wall_pressure") == "even"
+                                       ? solver::WallPressure::even
+                                       : solver::WallPressure::inertial;
         const std::string& method = scene.case_settings.word("wall_method");
         simulation.wall_method = method == "dummy"   ? solver::WallMethod::dummy
                                  : method == "fixed" ? solver::WallMethod::fixed

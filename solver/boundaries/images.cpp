@@ -55,19 +55,20 @@ void Images<Dim>::place(const std::vector<Vector<Dim>>& positions, Particles<Dim
 }
 
 template <int Dim>
-void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, double t,
+void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, const WallTimes& times,
                          Particles<Dim>& particles) {
     clear(particles);
     std::vector<Vector<Dim>> positions;
     for (const Wall<Dim>& wall : walls) {
         const auto reflect = [&](int source, int particle, const Vector<Dim>& x) {
-            const Vector<Dim> start = wall.at_start(x, t);
+            const Vector<Dim> start = wall.at_start(x, times.place);
             const double d = wall.distance(start);
             if (std::abs(d) < radius) {
                 const Vector<Dim> n = wall.normal(start);
                 const Vector<Dim> foot = x - d * n;
                 positions.push_back(foot - d * n);
-                add(source, particle, {n, wall.velocity(foot, t), wall.slip});
+                add(source, particle,
+                    {n, wall.velocity(foot, times.end), wall.acceleration(foot, times), wall.slip});
             }
         };
         // Images in the walls before are reflected, too: that fills the corners.
@@ -84,28 +85,28 @@ void Images<Dim>::mirror(std::span<const Wall<Dim>> walls, double radius, double
 
 template <int Dim>
 void Images<Dim>::stack(std::span<const Wall<Dim>> walls, std::span<const WallParticle<Dim>> of, double dx,
-                        double radius, double t, Particles<Dim>& particles) {
+                        double radius, const WallTimes& times, Particles<Dim>& particles) {
     clear(particles);
     std::vector<Vector<Dim>> positions;
     const auto fluid = static_cast<int>(particles.fluid_size());
     for (int i = fluid; i < static_cast<int>(first_); ++i) {
         const Wall<Dim>& wall = walls[of[particles.id[i] - fluid].wall];
         const auto at = vector_at<Dim>(particles.position, i);
-        const Vector<Dim> n = wall.normal(wall.at_start(at, t));
+        const Vector<Dim> n = wall.normal(wall.at_start(at, times.place));
         for (int layer = 1; layer * dx < radius; ++layer) {
             positions.push_back(at - layer * dx * n);
-            add(i, i, {n, wall.velocity(at, t), wall.slip, true});
+            add(i, i, {n, wall.velocity(at, times.end), wall.acceleration(at, times), wall.slip, true});
         }
     }
     place(positions, particles);
 }
 
 template <int Dim>
-void Images<Dim>::fill(Field& field, Parity parity, const Vector<Dim>& common) const {
+void Images<Dim>::fill(Field& field, Parity parity, const Vector<Dim>& body_share, double dt) const {
     for (std::size_t k = 0; k < size(); ++k) {
         const std::size_t from = source_[k];
         const std::size_t to = first_ + k;
-        const auto& [normal, wall_velocity, slip, carried] = reflection_[k];
+        const auto& [normal, wall_velocity, wall_acceleration, slip, carried] = reflection_[k];
         switch (parity) {
         case Parity::even:
             for (auto& component : field.components) {
@@ -116,6 +117,7 @@ void Images<Dim>::fill(Field& field, Parity parity, const Vector<Dim>& common) c
             set_vector<Dim>(field, to, reflected<Dim>(vector_at<Dim>(field, from), normal));
             break;
         case Parity::velocity: {
+            const Vector<Dim> common = body_share - dt * wall_acceleration;
             const Vector<Dim> relative = vector_at<Dim>(field, from) - common - wall_velocity;
             const Vector<Dim> image = carried                 ? relative
                                       : slip == Slip::no_slip ? Vector<Dim>(-relative)
@@ -144,10 +146,14 @@ void Images<Dim>::fill(Field& field, Parity parity, const Vector<Dim>& common) c
 }
 
 template <int Dim>
-std::vector<double> Images<Dim>::differences(const Vector<Dim>& slope, const Field& position) const {
+std::vector<double> Images<Dim>::differences(const Vector<Dim>& f, double rho, const Field& position) const {
     std::vector<double> result(size());
     for (std::size_t k = 0; k < size(); ++k) {
-        result[k] = slope.dot(vector_at<Dim>(position, first_ + k) - vector_at<Dim>(position, particle_[k]));
+        // An image of an image has the difference of that, and its own wall's on top.
+        const auto from = static_cast<std::size_t>(source_[k]);
+        const Vector<Dim> way = vector_at<Dim>(position, first_ + k) - vector_at<Dim>(position, from);
+        result[k] = (from < first_ ? 0 : result[from - first_]) +
+                    rho * (f - reflection_[k].wall_acceleration).dot(way);
     }
     return result;
 }

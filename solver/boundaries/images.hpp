@@ -28,20 +28,22 @@ public:
     /// Makes images of the fluid particles within `radius` (m) of each wall, at the time t (s): positions,
     /// and room in every other field. The image lies at r - 2 d n, reflected in the tangent plane at the foot
     /// point.
-    void mirror(std::span<const Wall<Dim>> walls, double radius, double t, Particles<Dim>& particles);
+    void mirror(std::span<const Wall<Dim>> walls, double radius, const WallTimes& times,
+                Particles<Dim>& particles);
 
     /// Makes images of the wall particles (`of` holds them in the order of their identities) at r - k dx n, k
     /// = 1, 2, … while k dx < radius.
     void stack(std::span<const Wall<Dim>> walls, std::span<const WallParticle<Dim>> of, double dx,
-               double radius, double t, Particles<Dim>& particles);
+               double radius, const WallTimes& times, Particles<Dim>& particles);
 
     /// Values of a field at the images, from those at the particles.
-    void fill(Field& field, Parity parity) const { fill(field, parity, Vector<Dim>::Zero()); }
-    /// The same for a velocity of which `common` is what everything has, images alike: only the rest is
-    /// reflected.
-    void fill(Field& field, Parity parity, const Vector<Dim>& common) const;
-    /// slope . (r_k - r_j) of every image k of a particle j: what a quantity with that gradient differs by.
-    std::vector<double> differences(const Vector<Dim>& slope, const Field& position) const;
+    void fill(Field& field, Parity parity) const { fill(field, parity, Vector<Dim>::Zero(), 0); }
+    /// The same for a velocity of which common - dt a, a the acceleration of the wall, is what everything
+    /// has, images alike: only the rest is reflected.
+    void fill(Field& field, Parity parity, const Vector<Dim>& common, double dt) const;
+    /// What a pressure with the gradient rho (f - a) next to a wall of acceleration a differs by at every
+    /// image from that of its particle, Pa.
+    std::vector<double> differences(const Vector<Dim>& f, double rho, const Field& position) const;
     void fill(double* values, int first) const; ///< the same for one even array with images from `first` on
 
     /// Whether a pair of particles sees of each other's images what it sees of the other's. Not so with wall
@@ -56,6 +58,7 @@ private:
     struct Reflection {
         Vector<Dim> normal;
         Vector<Dim> wall_velocity;
+        Vector<Dim> wall_acceleration;
         Slip slip;
         bool carried = false; ///< the velocity is that of the source, a wall particle
     };

@@ -13,6 +13,13 @@ enum class Slip {
     free_slip ///< only the velocity normal to the wall is the wall's: a smooth wall, or a plane of symmetry
 };
 
+/// When walls are looked at: where they are, and which step their velocity is the end of.
+struct WallTimes {
+    double place; ///< s
+    double begin; ///< s, of the step
+    double end;   ///< s
+};
+
 /// A wall as the zero of a signed distance. A shape is a function that returns one of these, in a file of
 /// solver/boundaries/shapes/.
 template <int Dim>
@@ -31,6 +38,13 @@ struct Wall {
     /// Where the shape was at t = 0, seen from a point x at the time t.
     Vector<Dim> at_start(const Vector<Dim>& x, double t) const {
         return displacement ? Vector<Dim>(x - displacement(t)) : x;
+    }
+
+    /// Mean over a step, m/s2. A wall that is set going at once has the velocity 0 at that instant.
+    Vector<Dim> acceleration(const Vector<Dim>& x, const WallTimes& times) const {
+        return times.end > times.begin ? Vector<Dim>((velocity(x, times.end) - velocity(x, times.begin)) /
+                                                     (times.end - times.begin))
+                                       : Vector<Dim>(Vector<Dim>::Zero());
     }
 };
 
@@ -58,13 +72,13 @@ enum class WallMethod {
 
 /// The pressure gradient normal to a wall.
 enum class WallPressure {
-    /// rho f.n, which holds the fluid up against the body force f: images have the pressure of their particle
-    /// and
-    /// rho f.(distance to it), and the share dt f of a velocity is not reflected.
-    hydrostatic,
+    /// rho (f - a).n, which holds the fluid up against the body force f and pushes it ahead of a wall of
+    /// acceleration a: images have the pressure of their particle and rho (f - a).(distance to it), and the
+    /// share dt (f - a) of a velocity is not reflected. From the momentum equation at the wall without
+    /// viscosity.
+    inertial,
     /// 0, as published: the reflected share of the velocity makes the pressure, but its gradient at the first
-    /// row
-    /// is half of it. Source: Xu 2009 §3.5.
+    /// row is half of what it should be. Source: Xu 2009 §3.5.
     even
 };
 

@@ -61,7 +61,7 @@ TEST(Images, AreReflectedInTheWallWithinTheSupport) {
     const std::vector<Wall<2>> walls{plane<2>("bed", {0, 0.5}, {0, 1}, Slip::no_slip)};
     auto particles = particles_at<2>({{0.1, 0.6}, {0.2, 0.81}, {0.3, 0.79}});
     Images<2> images;
-    images.mirror(walls, 0.3, 0, particles);
+    images.mirror(walls, 0.3, {}, particles);
     ASSERT_EQ(images.size(), 2U);
     ASSERT_EQ(particles.with_images(), 5U);
     EXPECT_EQ(particles.size(), 3U);
@@ -77,7 +77,7 @@ TEST(Images, OfImagesFillCorners) {
     const auto walls = faces<3>(cube<3>(1, false), {0, 1, 2}, Slip::free_slip);
     auto particles = particles_at<3>({{0.1, 0.2, 0.3}});
     Images<3> images;
-    images.mirror(walls, 0.4, 0, particles);
+    images.mirror(walls, 0.4, {}, particles);
     ASSERT_EQ(images.size(), 7U);
     Field& velocity = particles.velocity;
     for (int d = 0; d < 3; ++d) {
@@ -103,7 +103,7 @@ TEST(Images, InACircleLieOnTheSameRay) {
         auto particles = particles_at<2>({centre + r * ray, centre + (2 * r - 1) * ray});
         EXPECT_NEAR(wall.distance(centre + r * ray), 0.1, 1e-15);
         Images<2> images;
-        images.mirror({&wall, 1}, 0.15, 0, particles);
+        images.mirror({&wall, 1}, 0.15, {}, particles);
         ASSERT_EQ(images.size(), 1U);
         EXPECT_NEAR((values_at<2>(particles.position, 2) - centre - (2 - r) * ray).norm(), 0, 1e-15);
         // Solid rotation with the wall: the velocity of the image makes it that of the wall at the wall.
@@ -131,7 +131,7 @@ protected:
         const std::vector<Wall<3>> walls{plane<3>("wall", Vector<3>::Zero(), normal, slip, Vector<3>(speed))};
         auto particles = particles_at<3>({0.1 * normal});
         Images<3> images;
-        images.mirror(walls, 0.2, 0, particles);
+        images.mirror(walls, 0.2, {}, particles);
         Field& field = particles.field("value", Components, Lifetime::scratch, "test");
         for (int c = 0; c < Components; ++c) {
             field[c][0] = value[c];
