@@ -31,6 +31,7 @@ nlohmann::ordered_json as_json(const Calibration& result) {
     nlohmann::ordered_json tree{{"dx", result.dx},
                                 {"dt", result.dt},
                                 {"usable", as_json(result.usable)},
+                                {"lowest", as_json(result.lowest)},
                                 {"recommended", as_json(result.recommended)}};
     for (const verification::CalibrationRun& run : result.runs) {
         tree["runs"].push_back({{"alpha", run.alpha},

@@ -26,7 +26,10 @@ SceneRecord scene_of(const CalibrationRequest& request, double dx, double dt, do
                         " m; give another --dx or --depth");
     }
     solver::Assignments settings = request.settings;
-    settings.insert({{"start", "uniform"}, {"minimum_spacing", "0"}, {"maximum_energy", "100"}});
+    settings.insert({{"start", "uniform"},
+                     {"arrangement", "jittered"},
+                     {"minimum_spacing", "0"},
+                     {"maximum_energy", "100"}});
     settings["depth"] = solver::shortest(request.depth);
     settings["end_time"] = solver::shortest(request.duration);
     settings["time_step"] = solver::shortest(dt);
@@ -128,28 +131,43 @@ void check_calibration(const CalibrationRequest& request, double dx, double dt) 
 
 Calibration calibrate(const CalibrationRequest& request, double dx, double dt,
                       const std::function<void(double, double)>& progress) {
-    Calibration result{.dx = dx, .dt = dt, .runs = {}, .usable = {}, .recommended = {}};
+    Calibration result;
+    result.dx = dx;
+    result.dt = dt;
+    result.gravity = scene_of(request, dx, dt, 0).case_settings.number("gravity");
     const auto steady = [&](double alpha) {
         result.runs.push_back(run_at(scene_of(request, dx, dt, alpha), alpha,
                                      [&](double fraction) { progress(alpha, fraction); }));
         return result.runs.back().steady;
     };
+    /// Between a steady and an unsteady alpha: the steady end of the last interval.
+    const auto edge = [&](double good, double bad) {
+        for (int k = 0; k < request.bisections; ++k) {
+            const double middle = std::sqrt(good * bad);
+            (steady(middle) ? good : bad) = middle;
+        }
+        return good;
+    };
     steady(0);
-    double low = request.smallest;
-    double high = request.largest;
-    if (!steady(low)) {
+    std::vector<double> tried;
+    std::vector<bool> held;
+    for (double alpha = request.largest; alpha > request.smallest * 0.999; alpha /= 10) {
+        tried.push_back(alpha);
+        held.push_back(steady(alpha));
+    }
+    const auto top = static_cast<std::size_t>(std::ranges::find(held, true) - held.begin());
+    if (top == held.size()) {
         return result;
     }
-    if (steady(high)) {
-        low = high;
-    } else {
-        for (int k = 0; k < request.bisections; ++k) {
-            const double middle = std::sqrt(low * high);
-            (steady(middle) ? low : high) = middle;
-        }
+    std::size_t bottom = top;
+    while (bottom + 1 < held.size() && held[bottom + 1]) {
+        ++bottom;
     }
-    result.usable = low;
-    result.recommended = low / 2;
+    result.usable = top == 0 ? tried[0] : edge(tried[top], tried[top - 1]);
+    const bool to_the_end = bottom + 1 == held.size();
+    result.lowest =
+        to_the_end ? (result.runs[0].steady ? 0 : tried[bottom]) : edge(tried[bottom], tried[bottom + 1]);
+    result.recommended = std::max(*result.usable / 2, *result.lowest);
     return result;
 }
 
@@ -196,20 +214,22 @@ std::string markdown(const CalibrationRequest& request, std::span<const Calibrat
     std::string text = "## calibration of " + request.scheme.label() + ", depth " +
                        solver::shortest(request.depth) + " m, " + solver::shortest(request.duration) +
                        " s\n\n";
-    MarkdownTable table({"dx", "Δt", "p/ρgH at α = 0", "largest steady α", "p/ρgH there", "recommended",
-                         "published", "theory αdx²/(gHΔt²)"});
+    MarkdownTable table({"dx", "Δt", "p/ρgH at α = 0", "lowest steady α", "largest steady α", "p/ρgH there",
+                         "recommended", "published", "αdx²/(gHΔt²)"});
     for (const Calibration& result : results) {
         const auto share = [&](double alpha) {
-            return alpha * result.dx * result.dx / (9.81 * request.depth * result.dt * result.dt);
+            return alpha * result.dx * result.dx / (result.gravity * request.depth * result.dt * result.dt);
         };
         table.add({number(result.dx, "%g"), number(result.dt, "%g"), bed_text(run_with(result, 0)),
-                   alpha_text(result.usable),
+                   alpha_text(result.lowest), alpha_text(result.usable),
                    result.usable ? bed_text(run_with(result, *result.usable)) : "–",
                    alpha_text(result.recommended), published_at(result.dx),
                    result.usable ? number(share(*result.usable), "%.2g") : "–"});
     }
     text += table.text() + "\n";
-    text += "steady: mean within 5 % + dx/(2H) of rho g H and fluctuation at most 5 %, over the last half\n";
+    text += "steady: mean within 5 % + dx/(2H) of rho g H and fluctuation at most 5 %, over the last half; "
+            "alpha from " +
+            number(request.smallest, "%g") + " to " + number(request.largest, "%g") + " was tried\n";
     if (const auto law = calibration_law(results)) {
         text +=
             "law: alpha = " + number(std::exp(law->log_constant), "%.3g") +

@@ -232,6 +232,26 @@ class Contract(unittest.TestCase):
             "published_figures": [{"id": "XU-LAP", "value": 66.5, "agrees": True, "waiver": ""}]}))
         self.assert_refused(sphvv("compare", str(operators), str(out)), "in common")
 
+    def test_calibrate(self):
+        out = self.folder / "alpha.json"
+        result = sphvv("calibrate", "--dx", "0.02", "--dt", "0.001", "--duration", "0.05", "--json", str(out), "--quiet")
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        self.assertEqual(result.stderr, "")
+        self.assertIn("published", result.stdout)
+        tree = json.loads(out.read_text())
+        self.assertEqual(tree["kind"], "calibration")
+        (found,) = tree["calibration"]["results"]
+        self.assertEqual(found["dx"], 0.02)
+        self.assertEqual([run["alpha"] for run in found["runs"][:2]], [0, 1])
+        self.assertEqual(result.returncode, 0 if found["usable"] else 1)
+        self.assertEqual(len(tree["calibration"]["published"]), 3)
+        self.assertIn("Example: sphvv calibrate", sphvv("calibrate", "--help").stdout)
+        self.assert_refused(sphvv("calibrate", "--scheme", "isph_dfs"), "isph_dfs", "relaxation")
+        self.assert_refused(sphvv("calibrate", "--dx", "0.03"), "0.03", "--depth")
+        self.assert_refused(sphvv("calibrate", "--dx", "-1"), "--dx")
+        self.assert_refused(sphvv("calibrate", "--set", "time_step=1"), "time_step", "--dt")
+        self.assert_refused(sphvv("calibrate", "--json", str(self.folder / "no" / "file")), "--json")
+
     def test_list_and_help(self):
         for subject in ("cases", "schemes", "kernels", "studies", "solutions"):
             entries = json.loads(sphvv("list", subject, "--json", "-").stdout)

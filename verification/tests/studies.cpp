@@ -295,18 +295,31 @@ std::vector<RunRecord> random_world(const Case& flow, std::mt19937_64& engine) {
             for (int f = 0; f < 2; ++f) {
                 run.errors[f].norms.l2 = level[f] * std::pow(share, order[f]);
             }
+            for (const std::string& name : compared_names(flow)) {
+                if (std::ranges::find(run.errors, name, &FieldError::field) == run.errors.end()) {
+                    FieldError error = run.errors[1];
+                    error.field = name;
+                    error.norms.l2 = std::pow(10, uniform(-6, 1));
+                    run.errors.push_back(error);
+                }
+            }
+            for (FieldError& error : run.errors) {
+                error.norms.linf = error.norms.l2 * uniform(1, 3);
+            }
+            run.minimum_spacing = uniform(0, 1);
             Deviation end{};
             end.errors = run.errors;
+            end.minimum_spacing = run.minimum_spacing;
             end.maximum_speed_exact = 1;
             end.maximum_speed = 1 + speed * share * uniform(0.5, 1);
             run.maximum_speed_error = end.maximum_speed - 1;
-            run.history = {end};
             run.survived = survives;
             run.time = survives ? 1 : uniform(0.2, 0.3);
+            end.time = run.time;
+            run.history = {end};
             if (!survives) {
                 run.errors.clear();
             }
-            run.minimum_spacing = uniform(0, 1);
             run.seconds = cost * run.n;
             run.work.pair_evaluations = static_cast<std::int64_t>(1e6 * cost * run.n);
             run.budget.momentum_drift = std::pow(10, uniform(-18, -6));
@@ -332,7 +345,7 @@ TEST(Claims, CanAllBeMetAndMissed) {
     for (const Case* flow : cases::all()) {
         std::map<const Claim*, std::set<bool>> outcomes;
         std::mt19937_64 engine(20261123);
-        for (int world = 0; world < 400; ++world) {
+        for (int world = 0; world < 2000; ++world) {
             const std::vector<RunRecord> runs = random_world(*flow, engine);
             for (const Claim& claim : flow->claims) {
                 if (outcomes[&claim].size() < 2) {
