@@ -105,6 +105,8 @@ struct SceneHooks {
     std::function<void(const SceneRecord&, std::array<std::vector<double>, 2>&)> arrange{};
     /// Sets what the scheme is to be assembled with, after particles, walls and start values.
     std::function<void(const SceneRecord&, solver::Simulation<2>&)> prepare{};
+    /// Whether a field or measure means anything in this scene; none: all do.
+    std::function<bool(const SceneRecord&, std::string_view)> compares{};
     /// Adds stages and fields after the scheme's.
     std::function<void(const SceneRecord&, solver::Simulation<2>&)> complete{};
 };

@@ -178,6 +178,11 @@ std::vector<double> exact_scalar(const std::string& name, const Exact<Dim>& exac
     return exact.quantity(name, time);
 }
 
+bool is_meant(const SceneRecord& scene, std::string_view name) {
+    const auto& compares = scene.flow->hooks.compares;
+    return !compares || compares(scene, name);
+}
+
 template <int Dim>
 std::vector<FieldError> field_errors(const SceneRecord& scene, const solver::Simulation<Dim>& simulation,
                                      const Exact<Dim>& exact) {
@@ -187,6 +192,9 @@ std::vector<FieldError> field_errors(const SceneRecord& scene, const solver::Sim
     std::vector<FieldError> errors;
     for (const std::string& name : scene.flow->fields) {
         const solver::Field* field = particles.find(name);
+        if (!is_meant(scene, name)) {
+            continue;
+        }
         if (name == "velocity") {
             std::array<std::vector<double>, Dim> velocity;
             std::vector<std::span<const double>> ours;
@@ -225,6 +233,9 @@ Deviation compare(const SceneRecord& scene, const solver::Simulation<Dim>& simul
                         .energy_error = std::numeric_limits<double>::quiet_NaN()};
     if constexpr (Dim == 2) {
         for (const Measure& measure : scene.flow->measures) {
+            if (!is_meant(scene, measure.name)) {
+                continue;
+            }
             const double theirs =
                 analytic::quantity(exact.solution, measure.quantity.empty() ? measure.name : measure.quantity,
                                    exact.values)(measure.at, simulation.time);

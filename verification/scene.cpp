@@ -119,6 +119,8 @@ Layout layout_of(const SceneRecord& scene, const analytic::Domain& domain, int d
     return layout;
 }
 
+constexpr double headroom = 4; // for jets, in depths
+
 /// The box of the domain, with room above a free surface.
 template <int Dim>
 solver::Box<Dim> box_of(const SceneRecord& scene, const analytic::Domain& domain) {
@@ -132,7 +134,7 @@ solver::Box<Dim> box_of(const SceneRecord& scene, const analytic::Domain& domain
         if (boundary.face && !is_wall(boundary)) {
             const int d = boundary.face->direction;
             (boundary.face->high ? box.high[d] : box.low[d]) +=
-                (boundary.face->high ? 1 : -1) * (domain.high[d] - domain.low[d]);
+                (boundary.face->high ? headroom : -headroom) * (domain.high[d] - domain.low[d]);
         }
     }
     return box;

@@ -181,7 +181,7 @@ void judge_order(FieldStudy& study, const std::vector<Rung>& rungs) {
     study.reason = judgement.reason;
     study.fit = judgement.fit;
     const Expected& band = study.expectation->order;
-    if (judgement.verdict == Verdict::pass && band.high && *band.high < 1) {
+    if (judgement.verdict == Verdict::pass && band.high && *band.high <= 0.5) {
         // "As expected" must not read as "accurate".
         char text[80];
         std::snprintf(text, sizeof text, "; the scheme does not converge here, its finest L2 error is %.3g",
