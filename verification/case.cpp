@@ -51,12 +51,14 @@ bool has_boundary(const Case& c, bool surface) {
 }
 
 void add_boundary_keys(const Case& c, std::vector<Key>& keys) {
-    if (has_walls(c)) {
+    if (has_walls(c) && !has_key(keys, "wall_method")) {
         keys.push_back(Key::word("wall_method", "mirror", {"mirror", "mirror_row", "dummy", "fixed"},
                                  "what lies beyond a wall: mirror, images of the fluid; mirror_row, the same "
                                  "and a row of wall particles on the wall; dummy, that row and layers behind "
                                  "it with its velocity and pressure; fixed, that row and more wall particles "
                                  "behind it, each with a density of its own"));
+    }
+    if (has_walls(c)) {
         keys.push_back(Key::word("wall_pressure", "inertial", {"inertial", "even"},
                                  "pressure gradient normal to a wall: inertial, rho (f - a).n with the body "
                                  "force f and the wall's acceleration a; even, 0, as published"));

@@ -135,6 +135,8 @@ struct Case {
     int columns = 0;
     /// Parameters of the solution that are no keys: hooks.values derives them from other settings.
     std::vector<std::string> derived{};
+    /// Not negative: n counts the spacings along this side of the domain, which is near the reference length.
+    int reference_side = -1;
     /// Sides of the solution's domain, none of them its boundary, at which a smooth wall closes the scene.
     std::vector<analytic::Face> closed{};
     bool starts_at_rest = false; ///< although the solution is that of a later time, or has no start

@@ -167,8 +167,16 @@ std::vector<double> volumes(const solver::Simulation<Dim>& simulation) {
 }
 
 /// Exact values of a scalar that a case compares.
+/// Of a mean over time that a scene forms, the exact values are those of what it is the mean of.
 template <int Dim>
 std::vector<double> exact_scalar(const std::string& name, const Exact<Dim>& exact, double time) {
+    constexpr std::string_view mean = "mean_";
+    if (name.starts_with(mean)) {
+        return exact_scalar(name.substr(mean.size()), exact, time);
+    }
+    if (name == "velocity_x") {
+        return exact.list([](const analytic::State& state) { return state.velocity[0]; });
+    }
     if (name == "pressure") {
         return exact.list([](const analytic::State& state) { return state.pressure; });
     }

@@ -311,12 +311,18 @@ std::array<std::vector<double>, Dim> settled_points(const solver::Box<Dim>& box,
 
 } // namespace
 
-analytic::Values solution_values(const SceneRecord& scene) {
+/// The solution's parameters as they are set.
+static analytic::Values declared_values(const SceneRecord& scene) {
     analytic::Values values;
     for (const analytic::Parameter& p : analytic::solutions::find(scene.flow->solution).parameters) {
         values.emplace(p.name,
                        scene.case_settings.has(p.name) ? scene.case_settings.number(p.name) : p.value);
     }
+    return values;
+}
+
+analytic::Values solution_values(const SceneRecord& scene) {
+    analytic::Values values = declared_values(scene);
     if (scene.flow->columns > 0) {
         values["length"] = scene.case_settings.integer("columns") * spacing_of(scene);
     }
@@ -498,12 +504,23 @@ void set_start(const SceneRecord& scene, const analytic::Evaluator& exact, solve
 
 } // namespace
 
+/// The parameter, or the side of the domain that it is to stand for.
+static double reference_length(const SceneRecord& scene) {
+    const int side = scene.flow->reference_side;
+    if (side < 0) {
+        return scene.case_settings.number(scene.flow->reference_length);
+    }
+    const analytic::Domain domain =
+        analytic::solutions::find(scene.flow->solution).domain(declared_values(scene));
+    return domain.high[side] - domain.low[side];
+}
+
 double spacing_of(const SceneRecord& scene) {
     double excess = 0;
     for (const auto& [low, high] : ends_of(scene)) {
         excess = low + high != 1 && low + high != 2 ? low + high - 1 : excess;
     }
-    return scene.case_settings.number(scene.flow->reference_length) / (scene.n + excess);
+    return reference_length(scene) / (scene.n + excess);
 }
 
 template <int Dim>
