@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import jinja2
 from markupsafe import Markup
 
-from . import budgets, checks, figures, findings, histories, numbers, particles
+from . import budgets, checks, figures, findings, histories, numbers, particles, profiles
 from .ladders import NORM_COLUMNS, front_table, ladder_table
 from .operators import Workbench
 from .tables import Column, Names, Span, Table, breakable
@@ -341,6 +341,7 @@ class Builder:
                 self.looks, stamp, "dt" if in_time else "h")))],
             "history": None if in_time else self.history_view(group, stamp),
             "particles": [] if in_time else self.particle_pictures(group, stamp),
+            "profiles": [self.draw(picture) for picture in profiles.pictures(self.figure_names.unique, group, self.looks, stamp)],
             "budget": None if in_time else self.keep(budgets.table(self.table_names, group, dimension)),
             "schemes": [self.scheme_view(group, scheme, detailed.get(scheme)) for scheme in group.schemes],
             "fronts": [self.front_view(group, front) for front in group.fronts],

@@ -40,11 +40,12 @@ BUDGET.update({"claims?": "text", "lost?": "text"})
 MARK = {"time": "number", "l2_velocity": "number", "l2_pressure": "number", "maximum_speed": "number",
         "maximum_speed_exact": "number", "energy_error": "number"}
 PICTURE = {"time?": "number", "box?": "numbers", **{name + "?": "numbers" for name in ("x", "y", "speed", "pressure")}}
+PROFILE = {"field": "text", "coordinate": "numbers", "ours": "numbers", "exact": "numbers"}
 RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?": "number", "survived": "flag",
        "diagnosis?": "text", "end_time?": "number", "setup_seconds?": "number", "bytes_per_particle?": "number",
        "stages": [STAGE], "fields": [RUN_FIELD], "settings?": "object", "energy_error?": "number",
        "minimum_spacing?": "number", "maximum_speed_error?": "number", "budget?": BUDGET, "history?": [MARK],
-       "picture?": PICTURE}
+       "picture?": PICTURE, "profiles?": [PROFILE]}
 CURVE = {"scheme": "text", "n": "numbers", "error": "numbers", "cost": "numbers"}
 FRONT_ROW = {"scheme": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
 FRONT = {"group": "text", "field": "text", "norm": "text", "cost": "text", "curves": [CURVE], "rows": [FRONT_ROW]}
@@ -338,6 +339,11 @@ def check_picture(picture, path):
         raise ValueError(f"{path}.box is not low x, high x, low y, high y")
 
 
+def check_profile(profile, path):
+    if len({len(profile[name]) for name in ("coordinate", "ours", "exact")}) > 1:
+        raise ValueError(f"{path}: coordinate, ours and exact differ in length")
+
+
 def check_result(tree):
     """Checks the tree of a file; ValueError names the first member that is missing or wrong."""
     check_object(tree, RESULT, "")
@@ -350,6 +356,8 @@ def check_result(tree):
                 check_curve(curve, f"{kind}[{index}].curves[{number}]")
     for index, run in enumerate(tree["runs"]):
         check_picture(run["picture"], f"runs[{index}].picture")
+        for number, profile in enumerate(run["profiles"]):
+            check_profile(profile, f"runs[{index}].profiles[{number}]")
     if not any(tree[kind] for kind in EVIDENCE):
         raise ValueError("it holds no study, no check and no seeded fault")
 
