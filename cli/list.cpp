@@ -1,4 +1,5 @@
 #include "sphvv/analytic/solutions.hpp"
+#include "sphvv/solver/boundaries/wall_methods.hpp"
 #include "sphvv/solver/operators.hpp"
 #include "sphvv/solver/schemes.hpp"
 #include "sphvv/verification/cases.hpp"
@@ -94,6 +95,7 @@ const std::vector<Subject>& subjects() {
         {"kernels", [] { return entries_of(solver::kernels::all()); }},
         {"turbulence", [] { return entries_of(solver::turbulence::all()); }},
         {"wall_functions", [] { return entries_of(solver::wall_functions::all()); }},
+        {"boundaries", [] { return entries_of(solver::wall_methods::all()); }},
         {"studies", studies},
         {"solutions", [] { return entries_of(analytic::solutions::all()); }},
     };
@@ -145,7 +147,7 @@ void add_list(CLI::App& app, Act& act) {
     }
     command
         ->add_option("subject", options->subject,
-                     "cases, schemes, operators, kernels, studies or solutions; all if left out")
+                     "cases, schemes, operators, kernels, boundaries, studies or solutions; all if left out")
         ->check(CLI::IsMember(names));
     add_common(*command, options->common);
     command->footer("Example: sphvv list schemes --json -");

@@ -1,4 +1,5 @@
 #include "sphvv/analytic/solutions.hpp"
+#include "sphvv/solver/boundaries/wall_methods.hpp"
 #include "sphvv/verification/cases.hpp"
 
 #include <algorithm>
@@ -37,6 +38,22 @@ std::vector<std::string> free_surface_detectors() {
     return names;
 }
 
+std::vector<std::string> wall_method_names() {
+    std::vector<std::string> names;
+    for (const solver::WallMethodEntry* method : solver::wall_methods::all()) {
+        names.emplace_back(method->name);
+    }
+    return names;
+}
+
+std::string wall_method_summaries() {
+    std::string text;
+    for (const solver::WallMethodEntry* method : solver::wall_methods::all()) {
+        text.append(text.empty() ? "" : "; ").append(method->name).append(", ").append(method->summary);
+    }
+    return text;
+}
+
 bool has_key(const std::vector<Key>& keys, std::string_view name) {
     return std::any_of(keys.begin(), keys.end(), [&](const Key& key) { return key.name == name; });
 }
@@ -52,11 +69,8 @@ bool has_boundary(const Case& c, bool surface) {
 
 void add_boundary_keys(const Case& c, std::vector<Key>& keys) {
     if (has_walls(c) && !has_key(keys, "wall_method")) {
-        keys.push_back(Key::word("wall_method", "mirror", {"mirror", "mirror_row", "dummy", "fixed"},
-                                 "what lies beyond a wall: mirror, images of the fluid; mirror_row, the same "
-                                 "and a row of wall particles on the wall; dummy, that row and layers behind "
-                                 "it with its velocity and pressure; fixed, that row and more wall particles "
-                                 "behind it, each with a density of its own"));
+        keys.push_back(Key::word("wall_method", "mirror", wall_method_names(),
+                                 "what lies beyond a wall: " + wall_method_summaries()));
     }
     if (has_walls(c)) {
         keys.push_back(Key::word("wall_pressure", "inertial", {"inertial", "even"},

@@ -303,6 +303,14 @@ Picture picture_of(const solver::Simulation<2>& simulation) {
     for (std::size_t i = 0; i < particles.fluid_size(); ++i) {
         picture.speed[i] = std::hypot(particles.velocity[0][i], particles.velocity[1][i]);
     }
+    // What the box has above a free surface is room, not domain.
+    for (int d = 0; d < 2; ++d) {
+        if (simulation.free_surface && !simulation.box.periodic[d]) {
+            const std::vector<double>& x = d == 0 ? picture.x : picture.y;
+            picture.box[2 * d + 1] =
+                std::min(simulation.box.high[d], *std::ranges::max_element(x) + simulation.particle_spacing);
+        }
+    }
     return picture;
 }
 

@@ -3,6 +3,7 @@
 #include "sphvv/analytic/solutions.hpp"
 #include "sphvv/solver/arrangements.hpp"
 #include "sphvv/solver/boundaries/shapes/signed_distance.hpp"
+#include "sphvv/solver/boundaries/wall_methods.hpp"
 #include "sphvv/verification/particle_sets.hpp"
 
 #include <algorithm>
@@ -28,9 +29,13 @@ std::string key_names(std::span<const Key> keys) {
 
 constexpr double largest_particle_count = 2e7; // about 20 GB with the neighbour lists of a 3-D scene
 
+const solver::WallMethodEntry& wall_method(const SceneRecord& scene) {
+    return solver::wall_methods::find(scene.case_settings.word("wall_method"));
+}
+
 /// Whether a row of wall particles lies on the walls.
 bool rows_on_walls(const SceneRecord& scene) {
-    return scene.case_settings.has("wall_method") && scene.case_settings.word("wall_method") != "mirror";
+    return scene.case_settings.has("wall_method") && wall_method(scene).row_on_wall;
 }
 
 /// The rows of fluid particles in one direction.
@@ -175,7 +180,7 @@ std::array<std::vector<double>, Dim> fluid_axes(const Layout& layout) {
 /// Rows of wall particles behind the one on the wall. The first row of the fluid is dx from the wall: its
 /// support reaches that less beyond.
 int layers_behind(const SceneRecord& scene) {
-    if (scene.case_settings.word("wall_method") != "fixed") {
+    if (!wall_method(scene).layers_behind) {
         return 0;
     }
     const solver::Kernel& kernel = solver::kernels::find(scene.scheme_settings.word("kernel"));
@@ -424,10 +429,12 @@ void check_scene(const SceneRecord& scene) {
         std::ranges::any_of(boundaries, [](const auto& b) { return is_wall(b) && !b.face; })) {
         throw UserError(where + ": wall particles lie along plane walls only; give wall_method=mirror");
     }
-    if (scene.case_settings.has("wall_method") && scene.case_settings.word("wall_method") == "fixed" &&
+    if (scene.case_settings.has("wall_method") && wall_method(scene).compressible_only &&
         !scene.scheme->compressible) {
-        throw UserError(where + ": wall_method=fixed needs a scheme whose density evolves (wcsph); give "
-                                "wall_method=mirror, mirror_row or dummy");
+        throw UserError(
+            where + ": wall_method=" + std::string(wall_method(scene).name) +
+            " needs a scheme whose density evolves (wcsph); give wall_method=mirror, mirror_row or "
+            "dummy");
     }
     if (scene.case_settings.word("arrangement") == "settled") {
         check_settled(scene, domain, solution.dimension, where);
@@ -560,10 +567,7 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
         simulation.wall_pressure = scene.case_settings.word("wall_pressure") == "even"
                                        ? solver::WallPressure::even
                                        : solver::WallPressure::inertial;
-        const std::string& method = scene.case_settings.word("wall_method");
-        simulation.wall_method = method == "dummy"   ? solver::WallMethod::dummy
-                                 : method == "fixed" ? solver::WallMethod::fixed
-                                                     : solver::WallMethod::mirror;
+        simulation.wall_method = wall_method(scene).method;
     }
     if (scene.case_settings.has("surface_detector")) {
         const solver::Detector& detector =

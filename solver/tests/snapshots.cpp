@@ -492,7 +492,7 @@ struct Seen {
 /// Runs read_xdmf.py; by reader, what it saw.
 std::map<std::string, std::vector<Seen>> view(const fs::path& xdmf) {
     const char* given = std::getenv("SPHVV_PYTHON");
-    const std::string script = (fs::path(__FILE__).parent_path() / "read_xdmf.py").string();
+    const std::string script = (fs::path(SPHVV_SOLVER_FOLDER) / "tests/read_xdmf.py").string();
     const std::string command = std::string(given != nullptr ? given : "/usr/bin/python3") + " '" + script +
                                 "' '" + xdmf.string() + "'";
     std::FILE* pipe = ::popen(command.c_str(), "r");

@@ -285,12 +285,12 @@ std::vector<RunRecord> random_world(const Case& flow, std::mt19937_64& engine) {
     for (const std::string& label : labels) {
         const std::array<double, 2> order{uniform(0, 3), uniform(0, 3)};
         const std::array<double, 2> level{std::pow(10, uniform(-4, 0)), std::pow(10, uniform(-4, 0))};
-        const bool survives = uniform(0, 1) < 0.7;
+        const bool survives = uniform(0, 1) < 0.85;
         const double speed = uniform(-0.1, 0.1);
         const double cost = std::pow(10, uniform(-4, 0));
         const double disorder = uniform(0, 0.2);
-        for (RunRecord run :
-             synthetic_runs(label, {20, 28, 40, 56, 80, 112, 160, 200, 240}, [](double h) { return h; })) {
+        for (RunRecord run : synthetic_runs(label, {20, 28, 30, 32, 40, 56, 80, 112, 160, 200, 240},
+                                            [](double h) { return h; })) {
             const double share = std::pow(20. / run.n, 1);
             for (int f = 0; f < 2; ++f) {
                 run.errors[f].norms.l2 = level[f] * std::pow(share, order[f]);
@@ -333,6 +333,18 @@ std::vector<RunRecord> random_world(const Case& flow, std::mt19937_64& engine) {
             }
             run.h = 1.3 / run.n;
             run.picture = picture;
+            if (flow.profile_direction >= 0) {
+                for (const std::string& name : flow.fields) {
+                    const double error = std::pow(10, uniform(-4, 0));
+                    Profile profile{name, {}, {}, {}};
+                    for (int k = 0; k < 20; ++k) {
+                        profile.coordinate.push_back((k + 0.5) / 20);
+                        profile.exact.push_back(1);
+                        profile.ours.push_back(1 + error * uniform(-0.5, 1));
+                    }
+                    run.profiles.push_back(profile);
+                }
+            }
             runs.push_back(run);
         }
     }
