@@ -295,8 +295,8 @@ void find_neighbours(Simulation<Dim>& simulation, double skin) {
         particles.permute(grid.order());
     } else {
         std::vector<int> order(grid.order().begin(), grid.order().end());
-        std::ranges::stable_partition(order,
-                                      [&](int i) { return i < static_cast<int>(particles.fluid_size()); });
+        std::stable_partition(order.begin(), order.end(),
+                              [&](int i) { return i < static_cast<int>(particles.fluid_size()); });
         particles.permute(order);
     }
     make_images_and_list(simulation, skin);

@@ -151,7 +151,9 @@ Calibration calibrate(const CalibrationRequest& request, double dx, double dt,
     steady(0);
     std::vector<double> tried;
     std::vector<bool> held;
-    for (double alpha = request.largest; alpha > request.smallest * 0.999; alpha /= 10) {
+    const int decades = static_cast<int>(std::floor(std::log10(request.largest / request.smallest) + 1e-3));
+    for (int k = 0; k <= decades; ++k) {
+        const double alpha = request.largest / std::pow(10., k);
         tried.push_back(alpha);
         held.push_back(steady(alpha));
     }

@@ -447,10 +447,6 @@ TimeOrder euler_order(const Settings& /*settings*/) {
         "up over the steps, and with it a pressure that is the larger the finer the step"};
 }
 
-namespace {
-
-/// p_i + depth n.grad p = 0 with the normalised gradient: a pressure that is linear next to the surface
-/// vanishes on it. Where no normal or gradient can be told, p_i = 0.
 template <int Dim>
 void set_zero_on_surface(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, int i) {
     const FreeSurface& surface = *s.free_surface;
@@ -480,6 +476,8 @@ void set_zero_on_surface(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, int 
     }
     poisson.set_condition(i, scale);
 }
+
+namespace {
 
 template <int Dim>
 void set_surface_pressure(Simulation<Dim>& s, PressurePoisson<Dim>& poisson) {
@@ -546,6 +544,7 @@ void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, Fi
     template double target_density(const Simulation<Dim>&, const Field&);                                    \
     template void write_divergence_equations(Simulation<Dim>&, Projection<Dim>&);                            \
     template void write_density_equations(Simulation<Dim>&, Projection<Dim>&, double);                       \
+    template void set_zero_on_surface(Simulation<Dim>&, PressurePoisson<Dim>&, int);                         \
     template void solve_poisson(Simulation<Dim>&, PressurePoisson<Dim>&, Field&);                            \
     template void subtract_pressure_gradient(Simulation<Dim>&, const Projection<Dim>&, Field&, double,       \
                                              Field&);

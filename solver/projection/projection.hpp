@@ -117,6 +117,12 @@ Conserves conserves(const Settings& settings);
 /// Order in time of u^{n+1} = u^n + dt (...)(r* = r^n + dt u^n): one.
 TimeOrder euler_order(const Settings& settings);
 
+/// Equation i becomes p_i + depth n.grad p = 0 with the normalised gradient, normal and depth those that the
+/// free surface has for particle i: a pressure that is linear next to the surface vanishes on it. Where no
+/// normal or gradient can be told, p_i = 0.
+template <int Dim>
+void set_zero_on_surface(Simulation<Dim>& simulation, PressurePoisson<Dim>& poisson, int i);
+
 /// Solves the problem whose weights and sources are written, with the pressure 0 at a free surface, from the
 /// pressure as first guess; books the iterations and the matrix entries. Throws Diverged where the solver
 /// stops short of its tolerance.

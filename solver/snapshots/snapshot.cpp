@@ -76,7 +76,7 @@ Assignments texts_of_physics(const Simulation<Dim>& simulation) {
     const auto add = [&texts](const std::string& kind, std::string_view name, const Settings& settings) {
         texts[kind] = name;
         for (const auto& [key, text] : texts_of(settings)) {
-            texts[kind + "." + key] = text;
+            texts[std::string(kind).append(".").append(key)] = text;
         }
     };
     if (simulation.turbulence) {

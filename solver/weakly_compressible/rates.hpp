@@ -238,7 +238,7 @@ void update_renormalisation(const Simulation<Dim>& s, Rates<Dim>& f) {
         }
     });
     s.fill_walls(*f.renormalisation, Parity::tensor);
-    if (eigenvalue != nullptr) {
+    if (f.lowest_eigenvalue != nullptr) {
         s.fill_walls(*f.lowest_eigenvalue, Parity::even);
     }
 }

@@ -152,14 +152,10 @@ MaybeFinding impulse(Runs runs, const std::string& scheme, const char* measure, 
 }
 
 std::vector<Claim> claims() {
-    const auto claim = [](const char* id, std::string text, const char* value, const char* source,
+    const auto claim = [](const char* id, const std::string& text, const char* value, const char* source,
                           auto measure) {
-        return Claim{.id = id,
-                     .text = std::move(text),
-                     .published = value,
-                     .source = source,
-                     .where = {},
-                     .measure = measure};
+        return Claim{
+            .id = id, .text = text, .published = value, .source = source, .where = {}, .measure = measure};
     };
     const char* peregrine = "Peregrine 1972; Xu 2009 §6.4 (sheet)";
     return {
