@@ -271,7 +271,8 @@ std::vector<Front> fronts_of(const Case& flow, const std::vector<FieldStudy>& st
                 CostCurve curve{study.scheme, {}, {}};
                 std::vector<int> n;
                 for (const Sample& sample : study.samples) {
-                    if (study.field == field && sample.norms) {
+                    // An error that is zero to the last bit has no place on logarithmic axes.
+                    if (study.field == field && sample.norms && sample.norms->l2 > 0) {
                         curve.error.push_back(sample.norms->l2);
                         curve.cost.push_back(cost == "seconds"
                                                  ? sample.seconds

@@ -181,6 +181,21 @@ TEST(WalledScenes, RefuseWhatTheyCannotHold) {
                  UserError);
 }
 
+// A driving force that is not controlled is exact to the last bit, and has no place on a front.
+TEST(WalledScenes, AnErrorOfZeroEndsNoLadder) {
+    const LadderRequest request{
+        &cases::find("log_law_channel"),
+        {variant_of("wcsph:kernel=quartic_spline:h_over_dx=1.5:background_pressure=0")},
+        {{"driver", "constant"}, {"end_time", "0.005"}},
+        {12},
+        "command"};
+    const LadderResult result = run_ladder(request);
+    EXPECT_FALSE(result.studies.empty());
+    for (const Front& front : result.fronts) {
+        EXPECT_TRUE(front.field != "driving_force" || front.curves.empty());
+    }
+}
+
 // What the registry says of a method is what studies expect.
 TEST(WallOrders, FollowTheRegistry) {
     for (const Expectation& e : wall_orders::expectations(wall_orders::MorrisFloor::below)) {
