@@ -3,6 +3,7 @@
 #include "sphvv/solver/operators/laplacian_morris.hpp"
 #include "sphvv/solver/operators/symmetric_matrix.hpp"
 
+#include <cmath>
 #include <concepts>
 
 /// The momentum equation of a weakly compressible fluid, particle by particle. What a pair of particles does
@@ -229,17 +230,43 @@ struct MonaghanCleary {
     }
 };
 
+/// Twice the mean of two eddy viscosities, a + b. Source: Issa 2005 §5.1.
+struct ArithmeticMean {
+    static Lanes doubled(double a, Lanes b) { return a + b; }
+};
+
+/// Twice the logarithmic mean, 2 (a - b)/ln(a/b) = (a + b) x/artanh x with x = (a - b)/(a + b). Over a wall
+/// nu_T grows in proportion to the distance z and u as ln z: this mean times the difference of u is that of
+/// z, which a constant stress asks of every pair; the arithmetic mean is larger, by ln(z_j/z_i)/2 where z_i
+/// is much the smaller.
+struct LogarithmicMean {
+    static Lanes doubled(double a, Lanes b) {
+        Lanes result;
+        for (int l = 0; l < lane_count; ++l) {
+            const double sum = a + b[l];
+            const double difference = std::abs(a - b[l]);
+            // x/artanh x = 1 - x^2/3 - 4 x^4/45 - …; 0 where one of the two is.
+            result[l] = difference < 1e-3 * sum ? sum - difference * difference / (3 * sum)
+                        : a > 0 && b[l] > 0     ? 2 * difference / std::abs(std::log(a / b[l]))
+                                                : 0;
+        }
+        return result;
+    }
+};
+
 /// (mu_i + mu_j) m/(rho_i rho_j) F_ij r^2/(r^2 + eta^2) (u_i - u_j), div(nu grad u): Morris with an eddy
-/// viscosity. Source: Morris et al. 1997; Issa 2005 §2.
+/// viscosity, mu = rho nu_T. Source: Morris et al. 1997; Issa 2005 §2.
+template <class Mean>
 struct MorrisEddy {
     template <int Dim>
     static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
         const double v_i = fields.specific_volume[i];
-        return [&fields, i, own = m * (2 * mu * v_i + fields.eddy_viscosity[i]), other = m * v_i,
+        return [&fields, i, m, mu, v_i, mu_t = fields.eddy_viscosity[i] / v_i,
                 eta_squared](const Pairs<Dim>& pairs) {
-            const Lanes viscous = (own * gather(fields.specific_volume, pairs.j()) +
-                                   other * gather(fields.eddy_viscosity, pairs.j())) *
-                                  regularised_slope<Dim>(pairs.row, pairs.k, eta_squared);
+            const Lanes v_j = gather(fields.specific_volume, pairs.j());
+            const Lanes both = 2 * mu + Mean::doubled(mu_t, gather(fields.eddy_viscosity, pairs.j()) / v_j);
+            const Lanes viscous =
+                m * v_i * v_j * both * regularised_slope<Dim>(pairs.row, pairs.k, eta_squared);
             return [viscous, pairs, &fields, i](int d) {
                 return viscous * (fields.u[d][i] - gather(fields.u[d], pairs.j()));
             };
@@ -249,6 +276,7 @@ struct MorrisEddy {
 
 /// 2(dim+2) m (nu_i + nu_j)/(rho_i + rho_j) (u_ij . r_ij)/(r^2 + eta^2) gradW_ij with nu_i = mu/rho_i +
 /// nu_T,i: Monaghan-Cleary with an eddy viscosity. Source: Issa 2005 §5.1 (8 in 2-D).
+template <class Mean>
 struct MonaghanClearyEddy {
     template <int Dim>
     static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
@@ -262,7 +290,8 @@ struct MonaghanClearyEddy {
             const Lanes r2 = squared_separation<Dim>(pairs.row, pairs.k);
             const Lanes safe = r2 > 0 ? r2 + eta_squared : Lanes{} + 1.0;
             const Lanes v_j = gather(fields.specific_volume, pairs.j());
-            const Lanes both = mu + (nu_i + gather(fields.eddy_viscosity, pairs.j())) / (v_i + v_j);
+            const Lanes both =
+                mu + Mean::doubled(nu_i, gather(fields.eddy_viscosity, pairs.j())) / (v_i + v_j);
             return pressure_forces::central<Dim>(pairs, scale * v_j * both * pairs.slope() * along / safe);
         };
     }

@@ -273,6 +273,10 @@ const Scheme& wcsph() {
              Key::word("viscosity", "morris", {"morris", "monaghan_cleary"},
                        "morris: along u_ij; monaghan_cleary: along r_ij, with factor 2(dim+2); neither where "
                        "nu = 0"),
+             Key::word(
+                 "eddy_mean", "arithmetic", {"arithmetic", "logarithmic"},
+                 "of the eddy viscosities of a pair, where turbulence is modelled; logarithmic: exact where "
+                 "they grow in proportion to the distance from a wall"),
              Key::word("integrator", "explicit", {"explicit", "predictor_corrector", "verlet"},
                        "explicit: Lee 2008, first order; predictor_corrector: Issa 2005, second order; "
                        "verlet: a leap over two steps, as in SPHysics"),

@@ -376,10 +376,10 @@ void check_forces(int n) {
 
 TEST(ViscousForces, ConserveMomentumAndContainTheLaminarOnes) {
     using namespace viscous_forces;
-    check_forces<2, Morris, MorrisEddy>(14);
-    check_forces<2, MonaghanCleary, MonaghanClearyEddy>(14);
-    check_forces<3, Morris, MorrisEddy>(8);
-    check_forces<3, MonaghanCleary, MonaghanClearyEddy>(8);
+    check_forces<2, Morris, MorrisEddy<ArithmeticMean>>(14);
+    check_forces<2, MonaghanCleary, MonaghanClearyEddy<ArithmeticMean>>(14);
+    check_forces<3, Morris, MorrisEddy<ArithmeticMean>>(8);
+    check_forces<3, MonaghanCleary, MonaghanClearyEddy<ArithmeticMean>>(8);
 }
 
 /// The lattice's factor of the operator for u_x(z) linear, nu linear in z: force/(dnu/dz du/dz), at the
@@ -414,10 +414,37 @@ TEST(ViscousForces, HaveTheKnownLatticeFactorsForALinearViscosity) {
     using namespace viscous_forces;
     const double normalisation = 96 / (1199 * pi) / (51. / 2000);
     constexpr double half_a_digit = 5e-4;
-    EXPECT_NEAR(lattice_factor<MonaghanClearyEddy>(1.5), 0.943 * normalisation, half_a_digit);
-    EXPECT_NEAR(lattice_factor<MonaghanClearyEddy>(1.2), 0.886 * normalisation, half_a_digit);
-    EXPECT_NEAR(lattice_factor<MorrisEddy>(1.5), 0.990 * normalisation, half_a_digit);
-    EXPECT_NEAR(lattice_factor<MorrisEddy>(1.2), 0.994 * normalisation, half_a_digit);
+    EXPECT_NEAR(lattice_factor<MonaghanClearyEddy<ArithmeticMean>>(1.5), 0.943 * normalisation, half_a_digit);
+    EXPECT_NEAR(lattice_factor<MonaghanClearyEddy<ArithmeticMean>>(1.2), 0.886 * normalisation, half_a_digit);
+    EXPECT_NEAR(lattice_factor<MorrisEddy<ArithmeticMean>>(1.5), 0.990 * normalisation, half_a_digit);
+    EXPECT_NEAR(lattice_factor<MorrisEddy<ArithmeticMean>>(1.2), 0.994 * normalisation, half_a_digit);
+}
+
+// 2 (a - b)/ln(a/b); the series near a = b meets it, and a vanishing viscosity leaves none.
+TEST(LogarithmicMean, IsThatOfTwoEddyViscosities) {
+    using viscous_forces::LogarithmicMean;
+    for (const double ratio : {1e-12, 1e-3, 0.3, 0.99, 0.9985, 0.9999, 1.0, 1.5, 1e6}) {
+        const double a = 2e-3;
+        const double b = a * ratio;
+        const double exact = ratio == 1 ? 2 * a : 2 * (a - b) / std::log(a / b);
+        EXPECT_NEAR(LogarithmicMean::doubled(a, Lanes{} + b)[0], exact, 1e-9 * exact) << ratio;
+    }
+    EXPECT_EQ(LogarithmicMean::doubled(1e-3, Lanes{})[0], 0);
+    EXPECT_EQ(LogarithmicMean::doubled(0, Lanes{})[0], 0);
+}
+
+// Over a wall nu_T = kappa u* z and u = (u*/kappa) ln z: every pair then carries the stress of a linear
+// profile.
+TEST(LogarithmicMean, CarriesAConstantStressOverAWall) {
+    using viscous_forces::ArithmeticMean;
+    using viscous_forces::LogarithmicMean;
+    for (const double z : {1e-3, 1e-2, 0.1}) {
+        const double dz = 0.02;
+        const double difference = std::log((z + dz) / z);
+        const double exact = 2 * dz;
+        EXPECT_NEAR(LogarithmicMean::doubled(z, Lanes{} + (z + dz))[0] * difference, exact, 1e-12);
+        EXPECT_GT(ArithmeticMean::doubled(z, Lanes{} + (z + dz))[0] * difference, exact);
+    }
 }
 
 } // namespace

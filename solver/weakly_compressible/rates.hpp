@@ -132,17 +132,28 @@ Forces<Dim> forces_with(std::string_view pressure_force) {
     return of.at(pressure_force);
 }
 
-template <int Dim>
-Forces<Dim> forces_of(std::string_view pressure_force, std::string_view viscosity, bool eddy) {
+template <int Dim, class Mean>
+Forces<Dim> forces_with_eddies(std::string_view pressure_force, std::string_view viscosity) {
     using namespace viscous_forces;
-    if (viscosity == "none") {
+    return viscosity == "morris" ? forces_with<Dim, MorrisEddy<Mean>>(pressure_force)
+                                 : forces_with<Dim, MonaghanClearyEddy<Mean>>(pressure_force);
+}
+
+template <int Dim>
+Forces<Dim> forces_of(const Simulation<Dim>& s) {
+    using namespace viscous_forces;
+    const std::string& pressure_force = s.settings.word("pressure_force");
+    const std::string& viscosity = s.settings.word("viscosity");
+    if (s.turbulence) {
+        return s.settings.word("eddy_mean") == "logarithmic"
+                   ? forces_with_eddies<Dim, LogarithmicMean>(pressure_force, viscosity)
+                   : forces_with_eddies<Dim, ArithmeticMean>(pressure_force, viscosity);
+    }
+    if (s.kinematic_viscosity == 0) {
         return forces_with<Dim, None>(pressure_force);
     }
-    if (viscosity == "morris") {
-        return eddy ? forces_with<Dim, MorrisEddy>(pressure_force) : forces_with<Dim, Morris>(pressure_force);
-    }
-    return eddy ? forces_with<Dim, MonaghanClearyEddy>(pressure_force)
-                : forces_with<Dim, MonaghanCleary>(pressure_force);
+    return viscosity == "morris" ? forces_with<Dim, Morris>(pressure_force)
+                                 : forces_with<Dim, MonaghanCleary>(pressure_force);
 }
 
 /// The rates that the settings of a simulation ask for, with their fields.
@@ -158,25 +169,22 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
     const auto scratch = [&](const char* name, int components, const char* asked_by) -> Field& {
         return particles.field(name, components, Lifetime::scratch, asked_by);
     };
-    return {
-        particles.field("density", 1, Lifetime::state, "continuity"),
-        particles.field("pressure", 1, Lifetime::state, "equation_of_state"),
-        pressure_force == "sigma_2" ? &scratch("pressure_over_squared_density", 1, "momentum") : nullptr,
-        scratch("specific_volume", 1, "momentum"),
-        scratch("acceleration", Dim, "momentum"),
-        scratch("density_rate", 1, "continuity"),
-        renormalised ? &scratch("renormalisation", symmetric_components<Dim>, "momentum") : nullptr,
-        hybrid ? &scratch("lowest_eigenvalue", 1, "momentum") : nullptr,
-        tait,
-        eta * eta,
-        continuity == "sigma_2"   ? Continuity::sigma_2
-        : continuity == "sigma_1" ? Continuity::sigma_1
-                                  : Continuity::renormalised,
-        forces_of<Dim>(pressure_force,
-                       s.kinematic_viscosity == 0 && !s.turbulence ? "none" : s.settings.word("viscosity"),
-                       s.turbulence.has_value()),
-        hybrid ? 2 : 1,
-        s.turbulence ? &scratch("eddy_viscosity", 1, "momentum") : nullptr};
+    return {particles.field("density", 1, Lifetime::state, "continuity"),
+            particles.field("pressure", 1, Lifetime::state, "equation_of_state"),
+            pressure_force == "sigma_2" ? &scratch("pressure_over_squared_density", 1, "momentum") : nullptr,
+            scratch("specific_volume", 1, "momentum"),
+            scratch("acceleration", Dim, "momentum"),
+            scratch("density_rate", 1, "continuity"),
+            renormalised ? &scratch("renormalisation", symmetric_components<Dim>, "momentum") : nullptr,
+            hybrid ? &scratch("lowest_eigenvalue", 1, "momentum") : nullptr,
+            tait,
+            eta * eta,
+            continuity == "sigma_2"   ? Continuity::sigma_2
+            : continuity == "sigma_1" ? Continuity::sigma_1
+                                      : Continuity::renormalised,
+            forces_of<Dim>(s),
+            hybrid ? 2 : 1,
+            s.turbulence ? &scratch("eddy_viscosity", 1, "momentum") : nullptr};
 }
 
 /// Density and pressure of images: those of the particle, and where the walls hold the fluid up against the
