@@ -105,6 +105,11 @@ Scalar quantity(const Solution& solution, std::string_view name, const Values& v
                                 ".");
 }
 
+Vector body_force(const Solution& solution, const Values& values, double t) {
+    return solution.body_force != nullptr ? solution.body_force(values, t)
+                                          : solution.medium(values).body_force;
+}
+
 double density(const State& state, const Medium& medium) {
     return state.density.value_or(medium.density);
 }

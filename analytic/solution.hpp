@@ -38,7 +38,7 @@ enum class Equations {
     navier_stokes,     ///< ∂u/∂t + (u·∇)u = −∇p/ρ + ν∇²u + g, ∇·u = 0
     reynolds_averaged, ///< the same for mean fields with ∇·[(ν + ν_T)(∇u + ∇uᵀ)], ν_T the quantity
                        ///< eddy_viscosity
-    hydrostatic, ///< rest: u = 0, ∇p = ρg with the density of the state
+    hydrostatic, ///< rest: u = 0, ∇p = ρg with the density of the state and the body force g of the time
     impulsive, ///< u = ∇φ, ∇²φ = 0 just after an impulse: quantities potential φ and impulse ∫p dt = −ρφ
 };
 
@@ -100,7 +100,7 @@ struct Medium {
     double density;             ///< kg/m3; of a compressible medium, where p = 0
     double kinematic_viscosity; ///< m2/s, that of the equations
     double maximum_speed;       ///< m/s, over the domain and all t >= 0; infinite where a corner is singular
-    Vector body_force{};        ///< m/s2, uniform and constant
+    Vector body_force{};        ///< m/s2, uniform; where it changes with time, at t = 0
 };
 
 /// Declaration of an exact solution. One file in analytic/solutions/ defines one, and nothing else has to be
@@ -121,6 +121,8 @@ struct Solution {
     /// The boundaries of the fluid; none where every direction is periodic.
     std::vector<Boundary> (*boundaries)(const Values&) = nullptr;
     std::vector<Quantity> quantities{};
+    /// Body force (m/s2) at a time; none where it is the medium's at all times.
+    Vector (*body_force)(const Values&, double t) = nullptr;
 };
 
 /// All parameters of a solution: the given values, and the declared ones for the rest.
@@ -135,6 +137,9 @@ bool has_quantity(const Solution& solution, std::string_view name);
 
 /// A quantity by its name, bound. Throws std::invalid_argument naming the accepted ones.
 Scalar quantity(const Solution& solution, std::string_view name, const Values& values);
+
+/// The body force (m/s2) of a solution at a time (s): its own where it changes, else the medium's.
+Vector body_force(const Solution& solution, const Values& values, double t);
 
 /// The density of a state: its own where it has one, else the medium's.
 double density(const State& state, const Medium& medium);

@@ -124,6 +124,7 @@ void advance(Simulation<Dim>& simulation) {
     ++simulation.step;
     simulation.positions_time = simulation.time;
     simulation.in_step = true;
+    simulation.set_body_force(simulation.time);
     for (Stage<Dim>& stage : simulation.stages) {
         const auto begin = Clock::now();
         const std::int64_t pairs = simulation.work.pair_evaluations;

@@ -96,7 +96,10 @@ struct Simulation {
     double kinematic_viscosity = 0;       ///< nu, m2/s
     double reference_speed = 0;           ///< U, m/s: the largest speed that the scene expects
     std::array<double, Dim> body_force{}; ///< m/s2, the same everywhere
-    double particle_mass = 0;             ///< kg (per metre of depth in 2-D)
+    /// m/s2 at a time (s), of a body force that changes with time; body_force is then its value at the level
+    /// in progress.
+    std::function<std::array<double, Dim>(double)> body_force_at;
+    double particle_mass = 0; ///< kg (per metre of depth in 2-D)
 
     double time = 0;                 ///< s, at the start of the step in progress
     double positions_time = 0;       ///< s, to which the positions belong: where walls that move are
@@ -120,6 +123,13 @@ struct Simulation {
     /// Adds a stage; the pair evaluations that it counts through `count_sweeps` are booked to it.
     void add_stage(std::string name, std::function<void(Simulation&)> run) {
         stages.push_back({std::move(name), std::move(run)});
+    }
+    /// Brings a body force that changes with time to the time t (s). A step starts with that of its start; a
+    /// scheme whose sums are of another level asks for that.
+    void set_body_force(double t) {
+        if (body_force_at) {
+            body_force = body_force_at(t);
+        }
     }
     /// Values of a field at wall particles that do not evolve there, and at images: to be called before every
     /// sweep that reads the field at neighbours.

@@ -44,6 +44,43 @@ inline double l2_error(const RunRecord& run, std::string_view field) {
     return found == run.errors.end() ? std::nan("") : found->norms.l2;
 }
 
+/// Largest relative error of the pressure at the end, from `low` to `high`, in every run of that scheme and
+/// rung: the range over the seeds, and how the first run ended that did not get there.
+inline std::optional<Claim::Finding> largest_pressure_error(std::span<const RunRecord> runs,
+                                                            std::string_view scheme, int n, double low,
+                                                            double high) {
+    std::vector<double> largest;
+    std::vector<double> mean;
+    std::vector<const RunRecord*> ended;
+    for (const RunRecord& run : runs) {
+        if (run.scheme == scheme && run.n == n) {
+            const auto found = std::ranges::find(run.errors, "pressure", &FieldError::field);
+            if (found == run.errors.end()) {
+                ended.push_back(&run);
+            } else {
+                largest.push_back(found->norms.linf);
+                mean.push_back(found->norms.l2);
+            }
+        }
+    }
+    std::string text;
+    if (!ended.empty()) {
+        text = std::to_string(ended.size()) + " of " + std::to_string(ended.size() + largest.size()) +
+               " ended early, the first at t = " + number(ended[0]->time, "%.4f") +
+               " s: " + ended[0]->diagnosis;
+    }
+    if (largest.empty()) {
+        return ended.empty() ? std::nullopt : std::optional(Claim::Finding{text, false});
+    }
+    const auto range = [](std::vector<double> values) {
+        std::sort(values.begin(), values.end());
+        return (values.size() > 1 ? percent(values.front()) + " to " : "") + percent(values.back());
+    };
+    const auto inside = [&](double error) { return error >= low && error <= high; };
+    text += (text.empty() ? "largest " : "; otherwise largest ") + range(largest) + ", L2 " + range(mean);
+    return Claim::Finding{text, ended.empty() && std::all_of(largest.begin(), largest.end(), inside)};
+}
+
 /// Largest relative L2 error of the velocity over the run.
 inline double largest_l2_error(const RunRecord& run) {
     double largest = 0;

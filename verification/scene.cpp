@@ -4,6 +4,7 @@
 #include "sphvv/solver/arrangements.hpp"
 #include "sphvv/solver/boundaries/shapes/signed_distance.hpp"
 #include "sphvv/solver/boundaries/wall_methods.hpp"
+#include "sphvv/solver/unstructured.hpp"
 #include "sphvv/verification/particle_sets.hpp"
 
 #include <algorithm>
@@ -447,11 +448,28 @@ void check_scene(const SceneRecord& scene) {
 
 namespace {
 
+/// As many points as the rows have, without structure, in the part of the domain that the rows fill.
+template <int Dim>
+Points<Dim> unstructured_points(const Layout& layout, const analytic::Domain& domain, std::uint64_t seed) {
+    solver::Box<Dim> box;
+    std::size_t count = 1;
+    for (int d = 0; d < Dim; ++d) {
+        const Rows& rows = layout.rows[d];
+        box.low[d] = rows.first - rows.spacing / 2;
+        box.high[d] = rows.at(rows.count - 1) + rows.spacing / 2;
+        box.periodic[d] = domain.periodic[d];
+        count *= static_cast<std::size_t>(rows.count);
+    }
+    return solver::unstructured<Dim>(box, count, seed);
+}
+
 template <int Dim>
 Points<Dim> fluid_points(const SceneRecord& scene, const Layout& layout, const analytic::Domain& domain) {
     const std::string& arrangement = scene.case_settings.word("arrangement");
     Points<Dim> points = arrangement == "settled" ? settled_points<Dim>(box_of<Dim>(scene, domain), scene)
-                                                  : grid<Dim>(fluid_axes<Dim>(layout));
+                         : arrangement == "unstructured"
+                             ? unstructured_points<Dim>(layout, domain, scene.seed)
+                             : grid<Dim>(fluid_axes<Dim>(layout));
     if (arrangement == "jittered") {
         solver::jitter<Dim>(points, scene.case_settings.number("jitter") * layout.dx, scene.seed);
     }
@@ -553,8 +571,14 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
     simulation.kinematic_viscosity = medium.kinematic_viscosity;
     simulation.reference_speed =
         hooks.reference_speed ? hooks.reference_speed(scene, values) : medium.maximum_speed;
-    for (int d = 0; d < Dim; ++d) {
-        simulation.body_force[d] = medium.body_force[d];
+    const auto body_force_at = [&solution, values](double t) {
+        std::array<double, Dim> force;
+        std::copy_n(analytic::body_force(solution, values, t).begin(), Dim, force.begin());
+        return force;
+    };
+    simulation.body_force = body_force_at(0);
+    if (solution.body_force != nullptr) {
+        simulation.body_force_at = body_force_at;
     }
     const double volume = particle_volume(layout, Dim);
     simulation.particle_mass = medium.density * volume;

@@ -35,7 +35,7 @@ struct SceneRecord {
     solver::Settings case_settings;
     solver::Settings scheme_settings;
     int n;                  ///< particle spacings along the case's reference length
-    std::uint64_t seed = 1; ///< of a jittered or settled start
+    std::uint64_t seed = 1; ///< of a jittered, settled or unstructured start
     bool picture = false;   ///< the run keeps its particles at the end
 };
 

@@ -315,7 +315,8 @@ std::vector<SceneRecord> plan(const LadderRequest& request) {
         for (const int n : request.time_steps.empty() ? request.ladder : std::vector<int>{}) {
             SceneRecord scene = resolve_scene(*request.flow, variant, request.settings, n, any_scheme);
             const std::string& arrangement = scene.case_settings.word("arrangement");
-            const bool random = arrangement == "jittered" || arrangement == "settled";
+            const bool random =
+                arrangement == "jittered" || arrangement == "settled" || arrangement == "unstructured";
             check_scene(scene);
             for (int seed = 1; seed <= (random ? seeds_of_random_starts : 1); ++seed) {
                 scene.seed = static_cast<std::uint64_t>(seed);

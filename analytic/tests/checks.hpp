@@ -344,6 +344,7 @@ inline Residual balance(const Flow& flow, Random& random) {
     const std::vector<Vector> points = random_points(flow, random, 50);
     const std::vector<Derivatives> derivatives = derivatives_at(flow, points, t);
     std::array<std::array<double, 5>, 3> terms{}; // [direction][term]
+    const Vector force = body_force(flow.solution, flow.values, t);
     Vector error{};
     double divergence = 0;
     double gradient = 0;
@@ -355,7 +356,7 @@ inline Residual balance(const Flow& flow, Random& random) {
         for (int i = 0; i < flow.dimension(); ++i) {
             const std::array here{at.velocity_rate[i], dot(state.velocity, at.velocity_gradient[i]),
                                   at.pressure_gradient[i] / density(state, flow.medium), -viscous[i],
-                                  -flow.medium.body_force[i]};
+                                  -force[i]};
             double sum = 0;
             for (std::size_t term = 0; term < here.size(); ++term) {
                 terms[i][term] = std::max(terms[i][term], std::abs(here[term]));

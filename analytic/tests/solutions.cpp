@@ -152,6 +152,7 @@ TEST_P(EverySolution, TakesPartialValuesAndRejectsUnknownOnes) {
     if (solution.kinetic_energy != nullptr) {
         EXPECT_EQ(solution.kinetic_energy({}, 0.25), solution.kinetic_energy(all, 0.25));
     }
+    EXPECT_EQ(body_force(solution, {}, 0.25), body_force(solution, all, 0.25));
     for (const Quantity& declared : solution.quantities) {
         EXPECT_EQ(declared.bind({})(x, 0.25), declared.bind(all)(x, 0.25)) << declared.name;
     }
@@ -160,6 +161,7 @@ TEST_P(EverySolution, TakesPartialValuesAndRejectsUnknownOnes) {
     EXPECT_THROW(solution.domain(unknown), std::invalid_argument);
     EXPECT_THROW(solution.medium(unknown), std::invalid_argument);
     EXPECT_THROW(solution.bind(unknown), std::invalid_argument);
+    EXPECT_THROW(body_force(solution, unknown, 0), std::invalid_argument);
     if (solution.kinetic_energy != nullptr) {
         EXPECT_THROW(solution.kinetic_energy(unknown, 0), std::invalid_argument);
     }
@@ -181,7 +183,8 @@ TEST_P(EverySolution, IsFiniteAtTheEndsOfItsIntervals) {
             EXPECT_TRUE(std::isfinite(medium.kinematic_viscosity) && medium.kinematic_viscosity >= 0);
             const bool impulsive = solution.equations == Equations::impulsive;
             EXPECT_TRUE((impulsive || std::isfinite(medium.maximum_speed)) && medium.maximum_speed >= 0);
-            EXPECT_TRUE(std::isfinite(length(medium.body_force)));
+            EXPECT_EQ(body_force(solution, values, 0), medium.body_force);
+            EXPECT_TRUE(std::isfinite(length(body_force(solution, values, 1e6))));
             const Flow flow(solution, values);
             const Vector x = random_point(flow, random);
             for (const double t : {0.0, 1.0, 1e6}) {

@@ -338,6 +338,7 @@ void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
 
 template <int Dim>
 void form_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
+    s.set_body_force(s.time + s.time_step); // the pressure that takes it off again is that of the end
     if (is_viscous(s)) {
         form_viscous_velocity(s, p, dt);
         return;

@@ -95,6 +95,7 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
         if (!sim.neighbours.follow(constant_arrays<Dim>(moved))) {
             renew_neighbours(sim);
         }
+        sim.set_body_force(sim.time + 0.5 * sim.time_step);
         accelerate(sim, *f);
         continuity(sim, *f);
         for (int d = 0; d < Dim; ++d) {

@@ -362,5 +362,31 @@ TYPED_TEST(SimulationTest, SumsAndMaximaAreThoseOfTheDefinition) {
     EXPECT_EQ(deterministic_sum(0, [](int) { return 1.; }), 0);
 }
 
+// A fluid that nothing holds, under a force that grows like t: n steps give it dt^2 times the sum of the
+// levels at which the force is taken, n(n - 1)/2 at the starts of steps, n(n + 1)/2 at their ends, n^2/2 in
+// the middle.
+TEST(ABodyForceThatChanges, IsTakenAtTheLevelOfTheScheme) {
+    constexpr int n = 5;
+    constexpr double dt = 1e-3;
+    const auto speed = [](const char* name, Assignments given) {
+        given["time_step"] = "1e-3";
+        const Scheme& scheme = schemes::find(name);
+        auto scene = still_scene<2>(scheme, given, 16);
+        scene.end_time = n * dt;
+        scene.body_force_at = [](double t) { return std::array{0., t}; };
+        scheme.assemble(scene);
+        for (int step = 0; step < n; ++step) {
+            advance(scene);
+        }
+        EXPECT_EQ(scene.particles.velocity[0][7], 0);
+        return scene.particles.velocity[1][7] / (dt * dt);
+    };
+    EXPECT_NEAR(speed("wcsph", {}), n * (n - 1) / 2, 1e-8);
+    EXPECT_NEAR(speed("wcsph", {{"integrator", "predictor_corrector"}}), n * n / 2., 1e-8);
+    EXPECT_NEAR(speed("isph_df", {}), n * (n + 1) / 2, 1e-8);
+    EXPECT_NEAR(speed("isph_lee", {}), n * (n + 1) / 2, 1e-8);
+    EXPECT_NEAR(speed("isph_mls", {}), n * n / 2., 1e-8);
+}
+
 } // namespace
 } // namespace sphvv::solver

@@ -1,9 +1,13 @@
 #include "sphvv/solver/boundaries/wall_methods.hpp"
+#include "sphvv/solver/snapshots/snapshot.hpp"
+#include "sphvv/solver/tests/temporary_folder.hpp"
+#include "sphvv/verification/claims.hpp"
 #include "sphvv/verification/run.hpp"
 #include "sphvv/verification/study.hpp"
 #include "sphvv/verification/wall_orders.hpp"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -99,6 +103,152 @@ TEST(ImpulsivePlate, MovesWithItsPlate) {
     for (const char* elevation : {"elevation_0.2", "elevation_0.3", "elevation_0.5"}) {
         EXPECT_LT(l2(run, elevation), 0.16) << elevation;
     }
+}
+
+const char* const taylor = "wcsph:background_pressure=0:c0_over_u=37.37:continuity=renormalised:"
+                           "kernel=cubic_spline:pressure_force=taylor";
+
+// Sound of 2 % and less of the pressure, and the error of a coarse lattice.
+TEST(AcceleratedTank, HasThePressureOfTheLimitButForSound) {
+    for (const char* arrangement : {"lattice", "unstructured"}) {
+        const RunRecord run = run_of("accelerated_tank", taylor, {{"arrangement", arrangement}}, 16);
+        ASSERT_TRUE(run.survived) << run.diagnosis;
+        EXPECT_LT(l2(run, "pressure"), 0.04) << arrangement;
+        EXPECT_LT(l2(run, "pressure_slope"), 0.02) << arrangement;
+        EXPECT_LT(run.errors[1].norms.linf_abs, 1e-3) << "the fluid moves by sound alone";
+    }
+}
+
+// A Laplacian that is exact for linear fields leaves the tolerance of the solver; a force of the start of the
+// step would leave dt/t = 8 %.
+TEST(AcceleratedTank, IsExactWithoutSound) {
+    for (const char* arrangement : {"lattice", "polar", "unstructured"}) {
+        const RunRecord run =
+            run_of("accelerated_tank", "isph_dfs:laplacian=schwaiger", {{"arrangement", arrangement}}, 16);
+        EXPECT_LT(l2(run, "pressure"), 1e-4) << arrangement;
+        EXPECT_LT(l2(run, "pressure_slope"), 1e-4) << arrangement;
+    }
+}
+
+/// Largest acceleration over that of the force, in the pressure of the limit at half of the time, after a
+/// step of no length to speak of.
+double imbalance(const char* pressure_force) {
+    const std::string variant =
+        std::string("wcsph:background_pressure=0:c0_over_u=37.37:continuity=renormalised:"
+                    "kernel=cubic_spline:time_step=1e-9:pressure_force=") +
+        pressure_force;
+    solver::Simulation<2> s = build_scene<2>(
+        resolve_scene(cases::find("accelerated_tank"), variant_of(variant), {{"arrangement", "polar"}}, 16));
+    s.time = 0.05;
+    const double force = -9.81 * s.time;
+    const double c0 = 37.37 * s.reference_speed;
+    solver::Field& pressure = s.particles.field("pressure", 1, solver::Lifetime::state, "test");
+    solver::Field& density = s.particles.field("density", 1, solver::Lifetime::state, "test");
+    for (std::size_t i = 0; i < s.particles.size(); ++i) {
+        const double p = s.density * force * s.particles.position[1][i];
+        pressure[0][i] = p;
+        density[0][i] = s.density * std::pow(1 + 7 * p / (s.density * c0 * c0), 1. / 7);
+    }
+    solver::advance(s);
+    return s.maximum_acceleration / std::abs(force);
+}
+
+// Derived: a renormalised difference is exact for linear pressures on any set, of particles and images; what
+// is left is the compression, p/(rho c0^2) = 4e-5.
+TEST(AcceleratedTank, HasTaylorsFormInBalanceOnAnySet) {
+    EXPECT_LT(imbalance("taylor"), 1e-3);
+    EXPECT_GT(imbalance("sigma_1"), 1);
+    EXPECT_GT(imbalance("renormalised"), 1);
+}
+
+solver::Simulation<2> tank_after(int steps) {
+    solver::Simulation<2> s = build_scene<2>(resolve_scene(
+        cases::find("accelerated_tank"), variant_of(taylor), {{"arrangement", "unstructured"}}, 20));
+    for (int step = 0; step < steps; ++step) {
+        solver::advance(s);
+    }
+    return s;
+}
+
+void expect_same_state(const solver::Simulation<2>& a, const solver::Simulation<2>& b) {
+    EXPECT_EQ(a.body_force, b.body_force);
+    for (const solver::Field& field : a.particles.fields()) {
+        if (field.lifetime == solver::Lifetime::state) {
+            EXPECT_EQ(field.components, b.particles.find(field.name)->components) << field.name;
+        }
+    }
+}
+
+TEST(AcceleratedTank, HasTheSameBitsOnTwoThreads) {
+    const int allowed = omp_get_max_threads();
+    omp_set_num_threads(1);
+    const solver::Simulation<2> one = tank_after(10);
+    omp_set_num_threads(2);
+    const solver::Simulation<2> two = tank_after(10);
+    omp_set_num_threads(allowed);
+    expect_same_state(one, two);
+    EXPECT_NEAR(one.body_force[1], -9.81 * (one.time - one.time_step), 1e-15);
+}
+
+class StoppedTank : public tests::TemporaryFolder {};
+
+// The force follows from the time: a snapshot does not hold it.
+TEST_F(StoppedTank, GoesOnWithTheSameBits) {
+    const solver::Simulation<2> whole = tank_after(20);
+    const solver::Assignments metadata{{"case", "accelerated_tank"}};
+    write_snapshot(tank_after(10), metadata, folder / "tank.h5");
+    solver::Simulation<2> second = tank_after(3);
+    read_snapshot(second, metadata, folder / "tank.h5");
+    for (int step = 0; step < 10; ++step) {
+        solver::advance(second);
+    }
+    EXPECT_EQ(second.time, whole.time);
+    expect_same_state(whole, second);
+}
+
+// Oger's set: asymmetric, nothing nearer to a wall than half a spacing, and all of the fluid.
+TEST(AcceleratedTank, HasRingsOffTheMiddle) {
+    const solver::Simulation<2> s = build_scene<2>(
+        resolve_scene(cases::find("accelerated_tank"), variant_of(taylor), {{"arrangement", "polar"}}, 20));
+    const double count = static_cast<double>(s.particles.fluid_size());
+    EXPECT_NEAR(count, 400, 20);
+    EXPECT_NEAR(count * s.particle_mass, 1000, 1e-9);
+    std::array<double, 2> mean{};
+    for (int d = 0; d < 2; ++d) {
+        for (const double x : s.particles.position.components[d]) {
+            EXPECT_LE(std::abs(x), 0.5 - 0.025 + 1e-12);
+            mean[d] += x / count;
+        }
+        EXPECT_LT(std::abs(mean[d]), 0.01);
+    }
+    EXPECT_GT(std::hypot(mean[0], mean[1]), 1e-6) << "symmetric";
+}
+
+TEST(Claims, SayWhichRunsEndedEarly) {
+    std::vector<RunRecord> runs(3);
+    for (RunRecord& run : runs) {
+        run.scheme = "wcsph";
+        run.n = 40;
+        run.errors = {{"pressure", Norms{0.1, 0.2, 0.3, 1, 1, 1, true}}};
+    }
+    runs[1].errors[0].norms.linf = 0.6;
+    const auto finding = [&](double low, double high) {
+        return largest_pressure_error(runs, "wcsph", 40, low, high).value();
+    };
+    EXPECT_FALSE(largest_pressure_error(runs, "wcsph", 20, 0, 1));
+    EXPECT_EQ(finding(0, 1).ours, "largest 30 % to 60 %, L2 20 % to 20 %");
+    EXPECT_TRUE(finding(0.3, 0.6).agrees);
+    EXPECT_FALSE(finding(0, 0.5).agrees);
+    EXPECT_FALSE(finding(0.4, 1).agrees);
+    runs[2].errors.clear();
+    runs[2].time = 0.05;
+    runs[2].diagnosis = "lost";
+    EXPECT_EQ(finding(0, 1).ours,
+              "1 of 3 ended early, the first at t = 0.0500 s: lost; otherwise largest 30 % "
+              "to 60 %, L2 20 % to 20 %");
+    EXPECT_FALSE(finding(0, 1).agrees);
+    runs.erase(runs.begin(), runs.begin() + 2);
+    EXPECT_EQ(finding(0, 1).ours, "1 of 1 ended early, the first at t = 0.0500 s: lost");
 }
 
 const Assignments channel{{"re", "5"}, {"gravity", "1"}, {"end_time", "0.4"}};
