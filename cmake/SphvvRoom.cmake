@@ -37,11 +37,17 @@ function(sphvv_room name)
   target_link_libraries(sphvv_${name} PUBLIC ${arg_LINK} PRIVATE $<BUILD_INTERFACE:sphvv_options>)
 endfunction()
 
+# All programs of the label `unit`, and nothing else: what the sanitizers need.
+add_custom_target(unit_tests)
+
 # sphvv_test(ROOM NAME LABEL): the GoogleTest program ROOM/tests/NAME.cpp, one CTest test with that label.
 function(sphvv_test room name label)
   add_executable(${room}_${name} ${CMAKE_CURRENT_SOURCE_DIR}/tests/${name}.cpp)
   target_link_libraries(${room}_${name} PRIVATE sphvv::${room} sphvv_options GTest::gtest_main ${ARGN})
   add_test(NAME ${room}.${name} COMMAND ${room}_${name})
+  if(label STREQUAL "unit")
+    add_dependencies(unit_tests ${room}_${name})
+  endif()
   # Threads that spin while they wait would take the processor from the tests beside them.
   set_tests_properties(${room}.${name} PROPERTIES LABELS ${label} ENVIRONMENT OMP_WAIT_POLICY=passive)
 endfunction()

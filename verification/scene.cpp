@@ -203,11 +203,14 @@ std::vector<solver::WallParticle<Dim>> wall_rows(const SceneRecord& scene, const
             auto along = fluid_axes<Dim>(layout);
             const int across = boundary.face->direction;
             for (int d = 0; d < across; ++d) {
-                if (layout.rows[d].low_row) {
-                    along[d].insert(along[d].begin(), domain.low[d]);
-                }
-                if (layout.rows[d].high_row) {
-                    along[d].push_back(domain.high[d]);
+                for (int layer = 0; layer <= layers_behind(scene); ++layer) {
+                    const double behind = layer * layout.rows[d].spacing;
+                    if (layout.rows[d].low_row) {
+                        along[d].insert(along[d].begin(), domain.low[d] - behind);
+                    }
+                    if (layout.rows[d].high_row) {
+                        along[d].push_back(domain.high[d] + behind);
+                    }
                 }
             }
             along[across].clear();

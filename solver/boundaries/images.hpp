@@ -32,7 +32,12 @@ public:
                 Particles<Dim>& particles);
 
     /// Makes images of the wall particles (`of` holds them in the order of their identities) at r - k dx n, k
-    /// = 1, 2, … while k dx < radius.
+    /// = 1, 2, … while k dx < radius. Every place behind the walls has one image:
+    ///  - a particle that lies on several walls (a corner of a cavity) has images behind all of them, at r -
+    ///    dx (k n + l n' + …);
+    ///  - where the layers of two faces of a convex body overlap, a place belongs to the nearer face, and one
+    ///    as near to both has the mean of its neighbours.
+    /// Source: Lee 2008 §1.3; Xu 2009 §3.5.
     void stack(std::span<const Wall<Dim>> walls, std::span<const WallParticle<Dim>> of, double dx,
                double radius, const WallTimes& times, Particles<Dim>& particles);
 
@@ -51,7 +56,7 @@ public:
     /// (mirror) or several (dummy).
     bool symmetric() const { return symmetric_; }
 
-    /// The particle, itself no image, behind the image k; and what its value is of.
+    /// The particle, itself no image, behind the image k; of an image that is a mean, one of them.
     int particle(std::size_t k) const { return particle_[k]; }
 
 private:
@@ -63,13 +68,23 @@ private:
         bool carried = false; ///< the velocity is that of the source, a wall particle
     };
 
+    /// An image whose values are the mean of others, which have theirs before it.
+    struct Mean {
+        std::size_t image;
+        std::vector<std::size_t> of; ///< places in a field
+    };
+
     void clear(const Particles<Dim>& particles);
+    /// Leaves one of the images that share a place, as the mean of those next to it.
+    void merge_shared_places(double dx, const Particles<Dim>& particles, std::vector<Vector<Dim>>& positions);
     void add(int source, int particle, const Reflection& reflection);
+    void take_means(double* values) const;
     void place(const std::vector<Vector<Dim>>& positions, Particles<Dim>& particles);
 
     std::vector<int> source_; // a particle or an earlier image
     std::vector<int> particle_;
     std::vector<Reflection> reflection_;
+    std::vector<Mean> means_;
     bool symmetric_ = true;
     std::size_t first_ = 0; // place of the first image in a field
 };
