@@ -22,10 +22,12 @@ const std::string step_a = issa + ":velocity_gradient=imposed:edge_velocity=impo
 const std::string step_b = issa + ":velocity_gradient=imposed:edge_velocity=computed";
 const std::string step_c_edge_imposed = issa + ":velocity_gradient=difference:edge_velocity=imposed";
 const std::string step_c = issa + ":velocity_gradient=difference:edge_velocity=computed";
-/// A gradient that is exact for ln z, a mean of nu_T that is exact next to a wall, and a viscosity that an
-/// aligned lattice does not weaken.
+/// A gradient that is exact for ln z, a mean of nu_T that is exact next to a wall, a viscosity that an
+/// aligned lattice does not weaken, and a kernel under which particles do not pair (Dehnen & Aly 2012):
+/// without Monaghan's viscosity rows that slide past each other lose their order with the quartic and the
+/// quintic spline, 16 s on at 40 rows.
 const std::string improved =
-    "wcsph:kernel=quartic_spline:h_over_dx=1.5:pressure_force=sigma_1:viscosity=morris:"
+    "wcsph:kernel=wendland_c4:h_over_dx=1.9:pressure_force=sigma_1:viscosity=morris:"
     "eta_over_h=0:background_pressure=0:velocity_gradient=logarithmic:eddy_mean=logarithmic:"
     "edge_velocity=computed";
 
@@ -218,6 +220,24 @@ std::vector<Claim> claims(const char* id, const char* source) {
     };
 }
 
+std::vector<Expectation> expectations() {
+    const std::vector<Condition> exact_at_the_wall{{"velocity_gradient", 0, 0, "logarithmic"},
+                                                   {"eddy_mean", 0, 0, "logarithmic"},
+                                                   {"edge_velocity", 0, 0, "computed"},
+                                                   {"driver", 0, 0, "controlled"}};
+    std::vector<Expectation> all;
+    for (const char* field : {"velocity", "mean_velocity_x"}) {
+        all.push_back({.scheme = "wcsph",
+                       .field = field,
+                       .where = exact_at_the_wall,
+                       .order = {-0.5, 0.5, "derived: the log law has no length of its own"},
+                       .text = "ln z and nu_T = kappa u* z look the same in z/dx at every dx, so the rows "
+                               "next to the wall, whose supports reach beyond it, are off by the same share "
+                               "of u* on every rung"});
+    }
+    return all;
+}
+
 std::vector<Study> studies(const std::string& name) {
     const std::vector<std::string> steps{step_a, step_b, step_c_edge_imposed, step_c, improved};
     // Beside the thesis: a box as narrow as the supports allow, c0 = 10 (u_max + sqrt(g H)) = 35 m/s in place
@@ -235,15 +255,8 @@ std::vector<Study> studies(const std::string& name) {
              .tier = Tier::nightly,
              .schemes = {step_a, step_c, improved},
              .settings = brief,
-             .ladder = {20, 30, 40},
-             .cost = "4 min",
-             .picture_at = 40},
-            {.name = name + "/finer",
-             .tier = Tier::full,
-             .schemes = {step_a, step_c, improved},
-             .settings = brief,
              .ladder = {20, 30, 40, 60, 80},
-             .cost = "30 min",
+             .cost = "8 min",
              .picture_at = 80},
             {.name = name + "/finest",
              .tier = Tier::full,

@@ -25,6 +25,10 @@ double reference_speed(const SceneRecord& scene, const analytic::Values& values)
 
 /// Claims of one channel and its ladders.
 std::vector<Claim> claims(const char* id, const char* source);
+/// Order 0 of the velocity where everything is exact next to the wall. Where the mean of the eddy viscosities
+/// is not, the stress there is ln(dx/delta)/2 of what it should be: right at dx = e^2 delta, 54 rows of the
+/// smooth channel, so that no power of dx describes the error.
+std::vector<Expectation> expectations();
 std::vector<Study> studies(const std::string& name);
 
 } // namespace sphvv::verification::turbulent_channel

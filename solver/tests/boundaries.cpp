@@ -1,5 +1,6 @@
 // Walls: images of particles, their values, and schemes in scenes with walls.
 //   solver_boundaries --gtest_filter='*isph_dfs*'
+#include "sphvv/solver/boundaries/shapes/box.hpp"
 #include "sphvv/solver/boundaries/shapes/circle.hpp"
 #include "sphvv/solver/boundaries/shapes/plane.hpp"
 #include "sphvv/solver/linear/pressure_poisson.hpp"
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <set>
 
 namespace sphvv::solver {
 namespace {
@@ -113,6 +115,212 @@ TEST(Images, InACircleLieOnTheSameRay) {
         }
         images.fill(particles.velocity, Parity::velocity);
         EXPECT_NEAR((values_at<2>(particles.velocity, 2) - 2.5 * (2 - r) * across).norm(), 0, 1e-14);
+    }
+}
+
+// Corners of dummy walls (Lee 2008 §1.3): every place behind the walls has one particle.
+
+constexpr double corner_dx = 0.1;
+
+/// The fluid in a closed box of 10 spacings, or around a square of 10 in a periodic box of 30, with a row of
+/// wall particles on the wall, and the lattice of which they are all part from `first` on.
+struct CornerScene {
+    Box<2> box;
+    std::vector<Wall<2>> walls;
+    std::vector<WallParticle<2>> wall_particles;
+    std::vector<Vector<2>> points; // fluid first
+};
+
+CornerScene corner_scene(bool convex) {
+    CornerScene scene;
+    const int cells = convex ? 30 : 10;
+    scene.box = cube<2>(cells * corner_dx, convex);
+    Box<2> body;
+    body.low = {10 * corner_dx, 10 * corner_dx};
+    body.high = {20 * corner_dx, 20 * corner_dx};
+    scene.walls = convex ? std::vector<Wall<2>>{shapes::box<2>("square", body, Slip::no_slip)}
+                         : faces<2>(scene.box, {0, 1}, Slip::no_slip);
+    for (int j = 0; j < cells + (convex ? 0 : 1); ++j) {
+        for (int i = 0; i < cells + (convex ? 0 : 1); ++i) {
+            const Vector<2> x(i * corner_dx, j * corner_dx);
+            double nearest = infinity;
+            int wall = 0;
+            for (int k = 0; k < static_cast<int>(scene.walls.size()); ++k) {
+                const double d = scene.walls[k].distance(x);
+                wall = d < nearest - 1e-9 ? k : wall;
+                nearest = std::min(nearest, d);
+            }
+            if (nearest > 1e-9) {
+                scene.points.push_back(x);
+            } else if (nearest > -1e-9) {
+                scene.wall_particles.push_back({wall, x});
+            }
+        }
+    }
+    for (const WallParticle<2>& particle : scene.wall_particles) {
+        scene.points.push_back(particle.position);
+    }
+    return scene;
+}
+
+void place(const CornerScene& scene, Particles<2>& particles) {
+    for (std::size_t i = 0; i < scene.points.size(); ++i) {
+        for (int d = 0; d < 2; ++d) {
+            particles.position[d][i] = scene.points[i][d];
+        }
+    }
+}
+
+class Corners : public testing::TestWithParam<bool> {
+protected:
+    static constexpr double radius = 3.9 * corner_dx;
+    CornerScene scene = corner_scene(GetParam());
+    Particles<2> particles{scene.points.size(), scene.wall_particles.size()};
+    Images<2> images;
+
+    void SetUp() override {
+        place(scene, particles);
+        images.stack(scene.walls, scene.wall_particles, corner_dx, radius, {}, particles);
+    }
+    Vector<2> position(std::size_t i) const { return values_at<2>(particles.position, i); }
+    std::size_t at(double x, double y) const {
+        for (std::size_t i = 0; i < particles.with_images(); ++i) {
+            if ((position(i) - corner_dx * Vector<2>(x, y)).norm() < 1e-9) {
+                return i;
+            }
+        }
+        ADD_FAILURE() << "nothing at (" << x << ", " << y << ") dx";
+        return 0;
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(All, Corners, testing::Values(false, true),
+                         [](const auto& test) { return test.param ? "OfASquareInTheFluid" : "OfACavity"; });
+
+TEST_P(Corners, HaveOneParticleAtEveryPlaceWithinASupport) {
+    std::set<std::pair<long, long>> taken;
+    for (std::size_t i = 0; i < particles.with_images(); ++i) {
+        const Vector<2> x = position(i) / corner_dx;
+        const std::pair place{std::lround(x[0]), std::lround(x[1])};
+        EXPECT_NEAR((x - Vector<2>(place.first, place.second)).norm(), 0, 1e-9) << "off the lattice";
+        EXPECT_TRUE(taken.insert(place).second) << "two at " << x.transpose();
+    }
+    const long end = GetParam() ? 0 : 3;
+    const long cells = std::lround(scene.box.length(0) / corner_dx);
+    for (long j = -end; j < cells + end; ++j) {
+        for (long i = -end; i < cells + end; ++i) {
+            // Of the square, as much as layers reach.
+            const double depth = GetParam() ? -scene.walls[0].distance(corner_dx * Vector<2>(i, j)) : 0;
+            if (depth < radius - 1e-9) {
+                EXPECT_TRUE(taken.contains({i, j})) << i << ", " << j;
+            }
+        }
+    }
+}
+
+TEST_P(Corners, CarryWhatTheirWallParticlesHave) {
+    Field& p = particles.field("p", 1, Lifetime::scratch, "test");
+    Random random(3);
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+        p[0][i] = random.uniform(-1, 1);
+        particles.velocity[0][i] = random.uniform(-1, 1);
+    }
+    images.fill(p, Parity::even);
+    images.fill(particles.velocity, Parity::velocity);
+    std::vector<double> even(particles.with_images());
+    std::copy_n(p[0], particles.size(), even.begin());
+    images.fill(even.data(), static_cast<int>(particles.size()));
+    const auto expect = [&](std::size_t image, const std::vector<std::size_t>& of) {
+        for (const auto& values : {p.components[0], particles.velocity.components[0], even}) {
+            double mean = 0;
+            for (const std::size_t i : of) {
+                mean += values[i] / static_cast<double>(of.size());
+            }
+            EXPECT_NEAR(values[image], mean, 1e-14);
+        }
+    };
+    if (GetParam()) {
+        for (int a = 1; a <= 3; ++a) {
+            const double low = 10 + a;
+            // The four beside (a, a) belong to the particles a and a + 1 of either face.
+            expect(at(low, low), {at(low, 10), at(low + 1, 10), at(10, low), at(10, low + 1)});
+            expect(at(low + 1, low), {at(low + 1, 10)});
+            expect(at(low, low + 1), {at(10, low + 1)});
+            const double high = 20 - a;
+            expect(at(high, low), {at(high, 10), at(high - 1, 10), at(20, low), at(20, low + 1)});
+        }
+    } else {
+        for (int a = 0; a <= 3; ++a) {
+            for (int b = a == 0 ? 1 : 0; b <= 3; ++b) {
+                expect(at(-a, -b), {at(0, 0)});
+                expect(at(10 + a, -b), {at(10, 0)});
+                expect(at(10 + a, 10 + b), {at(10, 10)});
+            }
+        }
+        expect(at(4, -2), {at(4, 0)});
+    }
+}
+
+// Water at rest: the pressure beyond a corner goes on as that of its neighbours does.
+TEST_P(Corners, HoldTheFluidUp) {
+    const Vector<2> f(0.3, -2);
+    const std::vector<double> difference = images.differences(f, 1000, particles.position);
+    for (std::size_t k = 0; k < images.size(); ++k) {
+        const Vector<2> x = position(particles.size() + k);
+        const std::size_t of = images.particle(k);
+        const bool shared = GetParam() && std::abs(std::abs(x[0] - 1.5) - std::abs(x[1] - 1.5)) < 1e-9;
+        if (!shared) {
+            EXPECT_NEAR(difference[k], 1000 * f.dot(x - position(of)), 1e-9) << x.transpose();
+        }
+    }
+    if (GetParam()) {
+        // The mean over the four of rho f.(way from the wall particle): a - 1 and a in depth from either
+        // face.
+        const double expected = 1000 * corner_dx * (f[0] + f[1]) * (1 + 0) / 4;
+        EXPECT_NEAR(difference[at(11, 11) - particles.size()], expected, 1e-9);
+    }
+}
+
+// Next to the corners, too, the kernel's sum over a lattice is that of the bulk, and a closed box leaves
+// constant pressures in the null space of the Laplacian.
+TEST_P(Corners, CompleteTheSupports) {
+    Simulation<2> sim(scene.box, scene.points.size(), scene.wall_particles.size());
+    place(scene, sim.particles);
+    sim.kernel = &kernels::find("quintic_spline");
+    sim.particle_spacing = corner_dx;
+    sim.smoothing_length = 1.3 * corner_dx;
+    sim.walls = scene.walls;
+    sim.wall_particles = scene.wall_particles;
+    sim.wall_method = WallMethod::dummy;
+    find_neighbours(sim, 0);
+    for (int i = 0; i < sim.neighbours.size(); ++i) {
+        EXPECT_EQ(sim.neighbours.row(i).count, 44) << "a disc of 3.9 dx holds 45 places of a square lattice";
+    }
+    EXPECT_GT(sim.neighbours.minimum_distance(), 0.99 * corner_dx);
+    PressurePoisson<2> problem({.symmetric = false});
+    problem.reset(sim.neighbours, sim.images);
+    for (int i = 0; i < problem.size(); ++i) {
+        problem.diagonal(i) = laplacian_morris_weights<2>(
+            sim.neighbours.row(i), UniformVolume{corner_dx * corner_dx}, 0, problem.weights(i));
+    }
+    Random random(5);
+    std::vector<double> x = random.values(problem.size(), -1, 1);
+    std::vector<double> y(problem.size());
+    problem.fix_at_zero(0); // so that no mean is taken off the product
+    problem.multiply(x.data(), y.data());
+    std::vector<double> all = x;
+    all.resize(sim.particles.with_images());
+    sim.images.fill(all.data(), problem.size());
+    for (int i = 1; i < problem.size(); ++i) {
+        const auto row = sim.neighbours.row(i);
+        double expected = 0;
+        double sum_of_row = problem.diagonal(i);
+        for (int k = 0; k < row.count; ++k) {
+            expected += problem.weights(i)[k] * (x[i] - all[row.index[k]]);
+            sum_of_row -= problem.weights(i)[k];
+        }
+        EXPECT_NEAR(y[i], expected, 1e-9 * problem.diagonal(i));
+        EXPECT_NEAR(sum_of_row, 0, 1e-9 * problem.diagonal(i));
     }
 }
 

@@ -14,7 +14,7 @@ const Case& log_law_channel_rough() {
         .reference_length = "depth",
         .leading_key = "friction_velocity",
         .end_time = 16,
-        .expectations = {},
+        .expectations = turbulent_channel::expectations(),
         .claims = turbulent_channel::claims("ISSA-TURB-ROUGH", "Issa 2005 §6.2.3 (ISSA-TURB-ROUGH)"),
         .studies = turbulent_channel::studies("log_law_channel_rough"),
         .fields = {"velocity", "mean_velocity_x", "mean_velocity_gradient", "mean_eddy_viscosity"},

@@ -219,6 +219,14 @@ std::vector<Study> studies() {
     const std::vector<std::string> schemes{
         with_lm, "isph_dfs:laplacian=schwaiger:viscosity=morris:wall_method=dummy",
         "isph_df:laplacian=schwaiger:viscosity=morris", with_ls, "wcsph:kernel=quintic_spline"};
+    // The quadrature bias of the quintic at h/dx = 1.3 shows on the finest rungs (verification.md §4); at 2
+    // it does not.
+    std::vector<std::string> without_bias = schemes;
+    for (const char* scheme : {"isph_df", "isph_dfs"}) {
+        without_bias.push_back(std::string(scheme) + ":h_over_dx=2:laplacian=schwaiger:viscosity=morris");
+    }
+    std::erase(without_bias, with_lm);
+    std::erase(without_bias, "isph_df:laplacian=schwaiger:viscosity=morris");
     // A weaker gravity than 9.81 m/s2 leaves the flow along the bed as it is, and sound may be slower.
     const solver::Assignments brief{{"re", "5"}, {"gravity", "1"}, {"end_time", "4"}};
     const auto issa = [](const char* end_time) {
@@ -237,7 +245,7 @@ std::vector<Study> studies() {
              .picture_at = 30},
             {.name = "poiseuille_free_surface/fine",
              .tier = Tier::nightly,
-             .schemes = schemes,
+             .schemes = without_bias,
              .settings = brief,
              .ladder = {9, 14, 20, 30, 40},
              .cost = "25 s",
