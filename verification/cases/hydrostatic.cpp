@@ -509,6 +509,14 @@ std::vector<Expectation> expectations() {
              "Oger's masses, walls and cut are not printed"},
         {.scheme = "wcsph",
          .field = "",
+         .where = {{"arrangement", 0, 0, "jittered"}, {"pressure_force", 0, 0, "hybrid_taylor"}},
+         .order = {0., std::nullopt, "Oger 2007: at most 50 % on an unstructured set"},
+         .text = "a jittered lattice under a free surface",
+         .waiver =
+             "at 40 rows one of five seeds loses a particle through the bed at t = 0.065 s: forces that "
+             "are not antisymmetric do not keep pairs apart"},
+        {.scheme = "wcsph",
+         .field = "",
          .where = {{"arrangement", 0, 0, "unstructured"}, {"pressure_force", 0, 0, "hybrid_taylor"}},
          .order = {0., std::nullopt, "Oger 2007: at most 50 % at t = 0.1 s"},
          .text = "unstructured particles under a free surface",
