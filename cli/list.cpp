@@ -82,6 +82,14 @@ Entries operators() {
     return entries;
 }
 
+Entries boundaries() {
+    Entries entries = entries_of(solver::wall_methods::all());
+    for (Entries& entry : entries) {
+        entry["formula"] = solver::wall_methods::find(entry["name"].get<std::string>()).formula;
+    }
+    return entries;
+}
+
 struct Subject {
     const char* name;
     Entries (*entries)();
@@ -95,7 +103,7 @@ const std::vector<Subject>& subjects() {
         {"kernels", [] { return entries_of(solver::kernels::all()); }},
         {"turbulence", [] { return entries_of(solver::turbulence::all()); }},
         {"wall_functions", [] { return entries_of(solver::wall_functions::all()); }},
-        {"boundaries", [] { return entries_of(solver::wall_methods::all()); }},
+        {"boundaries", boundaries},
         {"studies", studies},
         {"solutions", [] { return entries_of(analytic::solutions::all()); }},
     };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "sphvv/solver/boundaries/images.hpp"
+#include "sphvv/solver/boundaries/repulsion.hpp"
 #include "sphvv/solver/box.hpp"
 #include "sphvv/solver/flow_driver.hpp"
 #include "sphvv/solver/free_surface.hpp"
@@ -81,8 +82,9 @@ struct Simulation {
     std::vector<WallParticle<Dim>> wall_particles;
     WallMethod wall_method = WallMethod::mirror;
     WallPressure wall_pressure = WallPressure::inertial;
-    Images<Dim> images; ///< of particles near walls, made with the neighbour list
-    Settings settings;  ///< of the scheme
+    Images<Dim> images;                      ///< of particles near walls, made with the neighbour list
+    std::optional<Repulsion<Dim>> repulsion; ///< from walls, with WallMethod::repulsive
+    Settings settings;                       ///< of the scheme
     const Kernel* kernel = nullptr;
 
     std::optional<FreeSurface> free_surface;   ///< where the pressure is 0

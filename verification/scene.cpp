@@ -39,12 +39,17 @@ bool rows_on_walls(const SceneRecord& scene) {
     return scene.case_settings.has("wall_method") && wall_method(scene).row_on_wall;
 }
 
+/// Whether points on the walls repel the fluid.
+bool walls_repel(const SceneRecord& scene) {
+    return scene.case_settings.has("wall_method") && wall_method(scene).repulsion;
+}
+
 /// The rows of fluid particles in one direction.
 struct Rows {
     double first = 0;
     double spacing = 0;
     int count = 0;
-    bool low_row = false; ///< a row of wall particles at the low side
+    bool low_row = false; ///< a row of wall particles or points at the low side
     bool high_row = false;
 
     double at(int k) const { return first + k * spacing; }
@@ -199,7 +204,7 @@ std::vector<solver::WallParticle<Dim>> wall_rows(const SceneRecord& scene, const
         if (!is_wall(boundary)) {
             continue;
         }
-        if (boundary.face && rows_on_walls(scene)) {
+        if (boundary.face && rows_on_walls(scene) && !walls_repel(scene)) {
             auto along = fluid_axes<Dim>(layout);
             const int across = boundary.face->direction;
             for (int d = 0; d < across; ++d) {
@@ -227,6 +232,43 @@ std::vector<solver::WallParticle<Dim>> wall_rows(const SceneRecord& scene, const
                 }
                 particles.push_back({wall, x});
             }
+        }
+        ++wall;
+    }
+    return particles;
+}
+
+/// Points that repel, on every wall as far as the box goes: that is, where the fluid may rise to.
+template <int Dim>
+std::vector<solver::WallParticle<Dim>> repelling_points(const SceneRecord& scene, const Layout& layout,
+                                                        const solver::Box<Dim>& box) {
+    const int per_dx = static_cast<int>(scene.case_settings.integer("points_per_dx"));
+    std::vector<solver::WallParticle<Dim>> particles;
+    int wall = 0;
+    for (const analytic::Boundary& boundary : boundaries_of(scene)) {
+        if (!is_wall(boundary)) {
+            continue;
+        }
+        std::array<std::vector<double>, Dim> along;
+        const int across = boundary.face->direction;
+        for (int d = 0; d < Dim; ++d) {
+            const double spacing = layout.rows[d].spacing / per_dx;
+            const double intervals = box.length(d) / spacing;
+            const long count =
+                box.periodic[d] ? std::lround(intervals) : std::lround(std::ceil(intervals)) + 1;
+            for (long k = 0; k < count && d != across; ++k) {
+                const double from_low = static_cast<double>(k) + (box.periodic[d] ? 0.5 : 0);
+                along[d].push_back(box.low[d] + from_low * spacing);
+            }
+        }
+        along[across] = {boundary.face->high ? box.high[across] : box.low[across]};
+        const Points<Dim> points = grid<Dim>(along);
+        for (std::size_t k = 0; k < points[0].size(); ++k) {
+            solver::Vector<Dim> x;
+            for (int d = 0; d < Dim; ++d) {
+                x[d] = points[d][k];
+            }
+            particles.push_back({wall, x});
         }
         ++wall;
     }
@@ -440,6 +482,13 @@ void check_scene(const SceneRecord& scene) {
             " needs a scheme whose density evolves (wcsph); give wall_method=mirror, mirror_row or "
             "dummy");
     }
+    const auto sticks = [](const auto& b) { return b.kind == analytic::BoundaryKind::no_slip; };
+    if (walls_repel(scene) && solution.medium(solution_values(scene)).kinematic_viscosity > 0 &&
+        std::ranges::any_of(boundaries, sticks)) {
+        throw UserError(where + ": wall_method=" + std::string(wall_method(scene).name) +
+                        " carries no shear: it needs walls with free slip or a fluid without viscosity; give "
+                        "wall_method=mirror, mirror_row, dummy or fixed");
+    }
     if (scene.case_settings.word("arrangement") == "settled") {
         check_settled(scene, domain, solution.dimension, where);
     }
@@ -595,6 +644,14 @@ solver::Simulation<Dim> build_scene(const SceneRecord& scene) {
                                        ? solver::WallPressure::even
                                        : solver::WallPressure::inertial;
         simulation.wall_method = wall_method(scene).method;
+    }
+    if (walls_repel(scene)) {
+        const double U = simulation.reference_speed;
+        simulation.repulsion.emplace(
+            solver::RepulsiveLaw{*wall_method(scene).repulsion,
+                                 scene.case_settings.number("repulsion") * U * U, layout.dx,
+                                 static_cast<int>(scene.case_settings.integer("points_per_dx"))},
+            repelling_points<Dim>(scene, layout, simulation.box), simulation.box);
     }
     if (scene.case_settings.has("surface_detector")) {
         const solver::Detector& detector =

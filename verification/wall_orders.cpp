@@ -42,6 +42,9 @@ std::vector<Expectation> expectations(MorrisFloor floor) {
     std::vector<Expectation> all;
     for (const Subject& subject : second_order_schemes()) {
         for (const solver::WallMethodEntry* method : solver::wall_methods::all()) {
+            if (method->shear_order == 0) {
+                continue;
+            }
             const bool odd = method->shear_order == 2;
             if (odd && floor == MorrisFloor::reached && std::string_view(subject.scheme) == "wcsph") {
                 continue;

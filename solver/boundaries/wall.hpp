@@ -67,7 +67,17 @@ enum class WallMethod {
     /// Wall particles alone: a row on the wall and more behind it, whose density evolves by that of the
     /// fluid,
     /// as only a compressible scheme's does. Source: Issa 2005 §2.7 (fixed mirror particles).
-    fixed
+    fixed,
+    /// Nothing. Points on the wall, which are no particles, push the fluid away (repulsion.hpp). Source:
+    /// Monaghan 1994; Issa 2005 §2.7.
+    repulsive
+};
+
+/// The force between a particle and a point on a wall.
+enum class RepulsiveForm {
+    radial,        ///< of powers of the distance, along the line that joins them
+    lennard_jones, ///< the same, steeper, with a tail
+    normal         ///< along the normal of the wall, shared among neighbouring points
 };
 
 /// The pressure gradient normal to a wall.

@@ -2,6 +2,7 @@
 
 #include "sphvv/solver/boundaries/wall.hpp"
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -14,12 +15,14 @@ struct WallMethodEntry {
     std::string_view formula;
     std::string_view source;
     WallMethod method;
-    bool row_on_wall;       ///< wall particles on the wall, the fluid's first row dx from it; else dx/2
+    bool row_on_wall;       ///< particles or points on the wall, the fluid's first row dx from it; else dx/2
     bool layers_behind;     ///< more rows of wall particles, as far as a support reaches
     bool compressible_only; ///< needs a density that evolves
     /// Order of the velocity of a shear flow at a no-slip wall: images with 2w - u leave the second
-    /// derivative with a jump, a velocity that is constant beyond the wall the first.
+    /// derivative with a jump, a velocity that is constant beyond the wall the first. 0: the wall carries no
+    /// shear, and is one with free slip only.
     int shear_order;
+    std::optional<RepulsiveForm> repulsion{}; ///< by points on the wall, in place of a row of particles
 };
 
 namespace wall_methods {

@@ -251,7 +251,7 @@ void update_renormalisation(const Simulation<Dim>& s, Rates<Dim>& f) {
     }
 }
 
-/// acceleration(density, pressure, velocity) on the current neighbour list.
+/// acceleration(density, pressure, velocity) on the current neighbour list, and that by walls that repel.
 template <int Dim>
 void accelerate(Simulation<Dim>& s, Rates<Dim>& f) {
     s.fill_walls(s.particles.velocity, Parity::velocity);
@@ -262,6 +262,9 @@ void accelerate(Simulation<Dim>& s, Rates<Dim>& f) {
     }
     f.forces.accelerate(s, f);
     s.count_sweeps(f.force_sweeps);
+    if (s.repulsion) {
+        s.repulsion->add_to(f.acceleration, s.walls, s.particles, s.positions_time);
+    }
 }
 
 /// density_rate(density, velocity) on the neighbour list and with the density of the last accelerate():
