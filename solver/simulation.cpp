@@ -207,10 +207,15 @@ WallTimes Simulation<Dim>::wall_times() const {
 }
 
 template <int Dim>
+bool Simulation<Dim>::walls_move() const {
+    return std::ranges::any_of(walls,
+                               [](const Wall<Dim>& wall) { return static_cast<bool>(wall.displacement); });
+}
+
+template <int Dim>
 bool Simulation<Dim>::has_wall_pressure_gradient() const {
-    const auto moves = [](const Wall<Dim>& wall) { return static_cast<bool>(wall.displacement); };
     return wall_pressure == WallPressure::inertial && !walls.empty() &&
-           (body_force != std::array<double, Dim>{} || std::ranges::any_of(walls, moves));
+           (body_force != std::array<double, Dim>{} || walls_move());
 }
 
 template <int Dim>
@@ -304,7 +309,8 @@ void find_neighbours(Simulation<Dim>& simulation, double skin) {
 }
 
 template <int Dim>
-void renew_neighbours(Simulation<Dim>& simulation) {
+void renew_neighbours(Simulation<Dim>& simulation, double t) {
+    simulation.positions_time = t;
     hold_wall_particles(simulation);
     wrap_positions(simulation);
     make_images_and_list(simulation, 0);
@@ -470,7 +476,8 @@ std::array<double, Dim> momentum(const Simulation<Dim>& simulation) {
     template double even_step(const Simulation<Dim>&, double);                                               \
     template void wrap_positions(Simulation<Dim>&);                                                          \
     template void find_neighbours(Simulation<Dim>&, double);                                                 \
-    template void renew_neighbours(Simulation<Dim>&);                                                        \
+    template void renew_neighbours(Simulation<Dim>&, double);                                                \
+    template bool Simulation<Dim>::walls_move() const;                                                       \
     template void add_surface_stage(Simulation<Dim>&);                                                       \
     template double maximum_speed(const Simulation<Dim>&);                                                   \
     template double kinetic_energy(const Simulation<Dim>&);                                                  \

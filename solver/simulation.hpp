@@ -142,6 +142,7 @@ struct Simulation {
     void fill_walls_pressure(Field& pressure) const;
     /// By how much the pressure of every image differs from that of its particle, Pa.
     std::vector<double> wall_pressure_differences() const;
+    bool walls_move() const; ///< other than along themselves
     /// Whether walls change the pressure from a particle to its images at all.
     bool has_wall_pressure_gradient() const;
     WallTimes wall_times() const;
@@ -167,10 +168,11 @@ void wrap_positions(Simulation<Dim>& simulation);
 template <int Dim>
 void find_neighbours(Simulation<Dim>& simulation, double skin);
 
-/// Wraps and makes images and neighbour list anew within a step: the particles keep their order, so that
-/// fields formed earlier in the step stay theirs.
+/// Wraps and makes images and neighbour list anew within a step, of positions that belong to the time t (s),
+/// where walls that move are then: the particles keep their order, so that fields formed earlier in the step
+/// stay theirs.
 template <int Dim>
-void renew_neighbours(Simulation<Dim>& simulation);
+void renew_neighbours(Simulation<Dim>& simulation, double t);
 
 /// Adds the stage that finds the particles at the free surface, if the scene has one. The surface lies half a
 /// particle, V^(1/dim)/2, beyond the plane that fits the outermost particles best: of the particles at the

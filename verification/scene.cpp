@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace sphvv::verification {
 namespace {
@@ -443,6 +444,41 @@ SceneRecord resolve_scene(const Case& flow, const Variant& variant, const solver
             .n = n};
 }
 
+namespace {
+
+/// Smallest sum (m) of the distances of a point in the fluid from two walls that are no sides of the domain,
+/// over a grid of 64 points to a side: the width of the gap between them, as long as it is wider than the
+/// grid.
+double narrowest_gap(const std::vector<analytic::Boundary>& boundaries, const analytic::Domain& domain,
+                     int dimension) {
+    constexpr int points = 64;
+    double narrowest = std::numeric_limits<double>::infinity();
+    const int count = static_cast<int>(std::lround(std::pow(points, dimension)));
+    for (int k = 0; k < count; ++k) {
+        analytic::Vector x{};
+        int rest = k;
+        for (int d = 0; d < dimension; ++d) {
+            x[d] = domain.low[d] + (rest % points + 0.5) / points * (domain.high[d] - domain.low[d]);
+            rest /= points;
+        }
+        std::array<double, 2> nearest;
+        nearest.fill(std::numeric_limits<double>::infinity());
+        for (const analytic::Boundary& boundary : boundaries) {
+            if (is_wall(boundary) && !boundary.face) {
+                const double distance = boundary.distance(x);
+                nearest[1] = std::min(nearest[1], std::max(nearest[0], distance));
+                nearest[0] = std::min(nearest[0], distance);
+            }
+        }
+        if (nearest[0] > 0) {
+            narrowest = std::min(narrowest, nearest[0] + nearest[1]);
+        }
+    }
+    return narrowest;
+}
+
+} // namespace
+
 void check_scene(const SceneRecord& scene) {
     const analytic::Solution& solution = analytic::solutions::find(scene.flow->solution);
     const analytic::Domain domain = lattice_domain(scene);
@@ -471,6 +507,12 @@ void check_scene(const SceneRecord& scene) {
         }
     }
     const auto boundaries = boundaries_of(scene);
+    const double gap = narrowest_gap(boundaries, domain, solution.dimension);
+    if (gap < support * (1 - 1e-12)) {
+        throw UserError(where + ": the gap between its walls must hold a kernel support of " +
+                        shortest(support / layout.dx) +
+                        " dx; give n >= " + shortest(std::ceil(support / gap * scene.n - 1e-9)));
+    }
     if (rows_on_walls(scene) &&
         std::ranges::any_of(boundaries, [](const auto& b) { return is_wall(b) && !b.face; })) {
         throw UserError(where + ": wall particles lie along plane walls only; give wall_method=mirror");

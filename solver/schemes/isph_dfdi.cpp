@@ -34,13 +34,13 @@ void make_density_invariant(Simulation<Dim>& s, Projection<Dim>& p, Field& densi
     const double tolerance = s.settings.number("density_tolerance");
     const int most = s.settings.integer("density_iterations");
     const double tau_squared = s.time_step * s.time_step / 2;
-    renew_neighbours(s);
+    renew_neighbours(s, s.time + s.time_step);
     projection::sum_density(s, *p.density);
     for (int m = 0; m < most && largest_density_error(s, *p.density) >= tolerance; ++m) {
         projection::write_density_equations(s, p, tau_squared);
         projection::solve_poisson(s, p.poisson, density_pressure);
         projection::subtract_pressure_gradient(s, p, density_pressure, tau_squared, s.particles.position);
-        renew_neighbours(s);
+        renew_neighbours(s, s.time + s.time_step);
         projection::sum_density(s, *p.density);
     }
 }

@@ -113,7 +113,7 @@ void shift(Simulation<Dim>& s, const Shift<Dim>& f) {
     // it.
     s.fill_walls(f.displacement, Parity::displacement);
     if (!s.neighbours.follow(constant_arrays<Dim>(f.displacement))) {
-        renew_neighbours(s);
+        renew_neighbours(s, s.time + s.time_step);
     }
     s.fill_walls(particles.velocity, Parity::velocity);
     s.fill_walls_pressure(pressure);

@@ -29,7 +29,8 @@ void assemble(Simulation<Dim>& s) {
         add_scaled<Dim>(sim.particles.position, sim.time_step, shared->velocity_next);
     });
     // dt u* is up to 0.2 h: a list widened for it would have 1.3 times the pairs (1.5 in 3-D) in every sweep.
-    s.add_stage("moved_neighbours", renew_neighbours<Dim>);
+    s.add_stage("moved_neighbours",
+                [](Simulation<Dim>& sim) { renew_neighbours(sim, sim.time + sim.time_step); });
     s.add_stage("density",
                 [shared](Simulation<Dim>& sim) { projection::sum_density(sim, *shared->density); });
     s.add_stage("pressure_poisson", [shared](Simulation<Dim>& sim) {

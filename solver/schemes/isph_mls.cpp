@@ -315,8 +315,9 @@ void integrate(Simulation<Dim>& s, Fields<Dim>& f) {
     }
     for (std::size_t k = 0; k < stages; ++k) {
         if (k > 0) {
-            s.set_body_force(s.time + f.method.a[k - 1] * s.time_step);
-            renew_neighbours(s);
+            const double level = s.time + f.method.a[k - 1] * s.time_step;
+            s.set_body_force(level);
+            renew_neighbours(s, level);
             evaluate(s, f);
         }
         const bool last = k + 1 == stages;
@@ -375,7 +376,10 @@ void assemble(Simulation<Dim>& s) {
         }
     });
     s.add_stage("runge_kutta", [fields](Simulation<Dim>& sim) { integrate(sim, *fields); });
-    s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
+    s.add_stage("neighbours", [](Simulation<Dim>& sim) {
+        sim.positions_time = sim.time + sim.time_step;
+        find_neighbours(sim, 0);
+    });
     s.add_stage("rates", [fields](Simulation<Dim>& sim) {
         sim.set_body_force(sim.time + sim.time_step);
         evaluate(sim, *fields);

@@ -91,9 +91,9 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
         update_pressure(sim, *f);
     });
     s.add_stage("corrector", [f, &start, &moved](Simulation<Dim>& sim) {
-        sim.fill_walls(moved, Parity::displacement);
-        if (!sim.neighbours.follow(constant_arrays<Dim>(moved))) {
-            renew_neighbours(sim);
+        sim.fill_walls(moved, Parity::displacement); // images in walls that stay
+        if (sim.walls_move() || !sim.neighbours.follow(constant_arrays<Dim>(moved))) {
+            renew_neighbours(sim, sim.time + 0.5 * sim.time_step);
         }
         sim.set_body_force(sim.time + 0.5 * sim.time_step);
         accelerate(sim, *f);

@@ -626,6 +626,43 @@ TEST_P(BetweenWalls, WallParticlesStayAndDrag) {
     }
 }
 
+// A channel whose walls carry it along their normals at a constant speed is one at rest to an observer who
+// goes with them: nothing happens in it.
+TEST_P(BetweenWalls, AChannelThatIsCarriedAlongStaysAsItIs) {
+    std::vector<Assignments> variants{alike()};
+    for (const Key& key : scheme.keys) {
+        for (std::size_t k = 1; key.name == "integrator" && k < key.choices.size(); ++k) {
+            variants.push_back(alike());
+            variants.back()["integrator"] = key.choices[k];
+        }
+    }
+    constexpr double speed = 2; // 0.06 dx a step
+    for (const Assignments& given : variants) {
+        for (const WallMethod method : {WallMethod::mirror, WallMethod::dummy}) {
+            auto scene = channel_with_rows(scheme, given, 16, 0, method, [](double /*y*/) { return 0.; });
+            scene.box.low[1] = -0.5;
+            scene.box.high[1] = 1.5;
+            for (Wall<2>& wall : scene.walls) {
+                wall.velocity = [=](const Vector<2>& /*x*/, double /*t*/) { return Vector<2>(0, speed); };
+                wall.displacement = [=](double t) { return Vector<2>(0, speed * t); };
+            }
+            std::ranges::fill(scene.particles.velocity.components[1], speed);
+            for (int step = 0; step < 4; ++step) {
+                advance(scene);
+            }
+            EXPECT_EQ(scene.time, 4 * 0.002);
+            const auto x = by_identity<2>(scene.particles.id, scene.particles.position);
+            for (std::size_t k = 0; k < x.size(); ++k) {
+                const std::size_t row = k / 16; // of the fluid, then those on the walls
+                const double start = row < 15 ? (static_cast<double>(row) + 1) / 16 : row == 15 ? 0 : 1;
+                EXPECT_NEAR(x[k][1], start + speed * scene.time, 1e-10) << k;
+                EXPECT_NEAR(scene.particles.velocity[0][k], 0, 1e-9) << k;
+                EXPECT_NEAR(scene.particles.velocity[1][k], speed, 1e-9) << k;
+            }
+        }
+    }
+}
+
 // Fluid at rest and a uniform body force along walls that do not hold it back: the first step gives all of
 // it.
 TEST_P(BetweenWalls, ABodyForceAcceleratesTheFluid) {

@@ -343,6 +343,8 @@ TEST(WalledScenes, RefuseWhatTheyCannotHold) {
     EXPECT_THROW(check("poiseuille", "isph_dfs", {{"wall_method", "fixed"}}, 20), UserError);
     EXPECT_THROW(check("poiseuille", "isph_dfs", {{"wall_method", "brick"}}, 20), UserError);
     EXPECT_THROW(check("poiseuille", "isph_dfs", {{"columns", "4"}}, 20), UserError);
+    EXPECT_THROW(check("taylor_couette", "isph_dfs", {}, 3), UserError) << "3 dx between the cylinders";
+    EXPECT_NO_THROW(check("taylor_couette", "isph_dfs", {}, 4));
     EXPECT_THROW(check("poiseuille", "isph_dfs", {}, 3), UserError);
     EXPECT_THROW(check("taylor_couette", "isph_dfs", {{"wall_method", "dummy"}}, 16), UserError);
     EXPECT_THROW(run_of("impulsive_plate", "isph_dfs:laplacian=schwaiger:surface_peclet=30", {}, 8),
