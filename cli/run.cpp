@@ -95,7 +95,9 @@ Description read_scene_file(const std::string& path) {
 /// The description that a snapshot carries.
 Description read_snapshot_scene(const std::string& path) {
     Description description;
-    for (const auto& [key, value] : solver::read_snapshot_header(path).metadata) {
+    const solver::SnapshotHeader header = solver::read_snapshot_header(path);
+    description.settings["end_time"] = solver::shortest(header.end_time);
+    for (const auto& [key, value] : header.metadata) {
         if (key == "case") {
             description.flow = value;
         } else if (key == "scheme") {
@@ -241,22 +243,38 @@ struct GoodState {
     }
 };
 
-/// Snapshots at regular times beside the final one, and the XDMF file that strings them together.
+/// Snapshots at regular times beside the final one, numbered by these times, and the XDMF file that strings
+/// them together.
 class Frames {
 public:
     Frames(std::string out, double every) : out_(std::move(out)), every_(every) {}
+
+    /// Goes on after those that a run of the same scene has left until the time t (s).
+    void resume(const solver::Assignments& metadata, double t) {
+        if (every_ <= 0) {
+            return;
+        }
+        next_ = time_after(t);
+        for (std::size_t k = 0; static_cast<double>(k) * every_ < next_ - every_ / 2; ++k) {
+            try {
+                const std::filesystem::path file = path_of(k);
+                const auto header = solver::read_snapshot_header(file);
+                if (header.metadata == metadata && header.time <= t) {
+                    frames_.push_back(solver::xdmf_frame(file));
+                }
+            } catch (const UserError&) {
+                continue; // none, or none that can be read: the sequence is shorter by it
+            }
+        }
+    }
 
     template <int Dim>
     void save_if_due(const solver::Simulation<Dim>& simulation, const solver::Assignments& metadata) {
         if (every_ <= 0 || simulation.time < next_) {
             return;
         }
-        std::filesystem::path file(out_);
-        char number[16];
-        std::snprintf(number, sizeof number, "_%05zu", frames_.size());
-        file.replace_filename(file.stem().string() + number + ".h5");
-        save(simulation, metadata, file);
-        next_ = every_ * (std::floor(simulation.time / every_ + 1e-9) + 1);
+        next_ = time_after(simulation.time);
+        save(simulation, metadata, path_of(static_cast<std::size_t>(std::lround(next_ / every_)) - 1));
     }
 
     template <int Dim>
@@ -268,6 +286,15 @@ public:
     }
 
 private:
+    double time_after(double t) const { return every_ * (std::floor(t / every_ + 1e-9) + 1); }
+
+    std::filesystem::path path_of(std::size_t frame) const {
+        std::filesystem::path file(out_);
+        char number[32];
+        std::snprintf(number, sizeof number, "_%05zu", frame);
+        return file.replace_filename(file.stem().string() + number + ".h5");
+    }
+
     std::string out_;
     double every_;
     double next_ = 0;
@@ -338,6 +365,9 @@ int simulate(const SceneRecord& scene, const Options& options) {
     }
     remember_signals();
     Frames frames(out, options.every);
+    if (!options.resume.empty()) {
+        frames.resume(metadata, simulation.time);
+    }
     GoodState<Dim> good;
     good.take(simulation);
     frames.save_if_due(simulation, metadata);

@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+"""What becomes of a run that is stopped: killed at any time and resumed it gives the same bits as one that was not, and what
+was written stays readable. Called with the path of the sphvv executable."""
+
+import os
+import pathlib
+import random
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+SPHVV = None  # set from the command line
+
+# Every kind of state that a step hands to the next: schemes of all families, walls, a surface, a turbulent channel.
+SCENES = [
+    ("taylor_green", "isph_dfs", 64, ["re=100", "end_time=0.2", "arrangement=jittered"]),
+    ("taylor_green", "wcsph", 48, ["re=100", "end_time=0.3", "integrator=verlet"]),
+    ("taylor_green", "isph_mls", 40, ["re=1000", "end_time=0.3"]),
+    ("hydrostatic", "wcsph", 24, ["end_time=0.2", "start=uniform"]),
+    ("impulsive_plate", "isph_dfs", 12, ["end_time=0.05"]),
+    ("log_law_channel", "wcsph", 12, ["end_time=1"]),
+]
+SEEDS = 20
+
+
+def command(scene, out, *more):
+    case, scheme, n, settings = scene
+    words = [SPHVV, "run", case, "--scheme", scheme, "--n", str(n), "--out", str(out), "--every", every(scene), "--quiet"]
+    for setting in settings:
+        words += ["--set", setting]
+    return [*words, *more]
+
+
+def every(scene):
+    end = next(float(s.split("=")[1]) for s in scene[3] if s.startswith("end_time"))
+    return repr(end / 20)
+
+
+def content(path):
+    """Every dataset and attribute of a snapshot, bit by bit."""
+    found = {}
+
+    def take(name, item):
+        values = {"": item[()]} if isinstance(item, h5py.Dataset) else {}
+        values.update((f"@{key}", value) for key, value in item.attrs.items())
+        for key, value in values.items():
+            texts = getattr(value, "dtype", np.dtype(object)).kind == "O"
+            found[name + key] = str(value.tolist() if hasattr(value, "tolist") else value).encode() if texts else value.tobytes()
+
+    with h5py.File(path) as file:
+        take("/", file)
+        file.visititems(take)
+    return found
+
+
+def frames(folder):
+    return sorted(path for path in folder.glob("run_*.h5") if re.fullmatch(r"run_\d+\.h5", path.name))
+
+
+class Restart(unittest.TestCase):
+    def assert_same(self, path, expected):
+        ours, theirs = content(path), content(expected)
+        self.assertEqual(sorted(ours), sorted(theirs), path.name)
+        self.assertEqual([name for name in ours if ours[name] != theirs[name]], [], path.name)
+
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.scratch.name)
+
+    def tearDown(self):
+        self.scratch.cleanup()
+
+    def whole_run(self, scene):
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        begin = time.monotonic()
+        result = subprocess.run(command(scene, folder / "run.h5"), capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return folder, time.monotonic() - begin
+
+    def test_killed_and_resumed_it_gives_the_same_bits(self):
+        whole = {}
+        resumed = 0
+        for seed in range(SEEDS):
+            scene = SCENES[seed % len(SCENES)]
+            if scene[:2] not in whole:
+                whole[scene[:2]] = self.whole_run(scene)
+            expected, seconds = whole[scene[:2]]
+            choose = random.Random(seed)
+            folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+            out = folder / "run.h5"
+            with self.subTest(seed=seed, case=scene[0], scheme=scene[1]):
+                more = []
+                for _ in range(3):  # killed up to three times
+                    process = subprocess.Popen(command(scene, out, *more) if not more else
+                                               [SPHVV, "run", "--out", str(out), "--every", every(scene), "--quiet", *more],
+                                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+                    try:
+                        process.wait(timeout=choose.uniform(0.02, seconds))
+                    except subprocess.TimeoutExpired:
+                        process.send_signal(signal.SIGKILL)
+                    complaint = process.communicate()[1]
+                    self.assertIn(process.returncode, (0, -signal.SIGKILL), complaint)
+                    if process.returncode == 0:
+                        break
+                    left = frames(folder)
+                    for path in left:  # what was written stays whole
+                        self.assert_same(path, expected / path.name)
+                    if left:
+                        more = ["--resume", str(left[-1])]
+                        resumed += 1
+                else:
+                    words = (command(scene, out) if not more else
+                             [SPHVV, "run", "--out", str(out), "--every", every(scene), "--quiet", *more])
+                    result = subprocess.run(words, capture_output=True, text=True, check=False)
+                    self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertEqual([path.name for path in frames(folder)], [path.name for path in frames(expected)])
+                self.assert_same(out, expected / "run.h5")
+                self.assertEqual((folder / "run.xdmf").read_text(), (expected / "run.xdmf").read_text())
+                self.assertEqual(sorted(p.name for p in folder.iterdir() if p.suffix not in (".h5", ".xdmf")), [])
+        self.assertGreaterEqual(resumed, SEEDS // 2, "most were killed too early to leave anything")
+
+    def test_a_terminated_run_leaves_a_snapshot_that_can_be_resumed(self):
+        scene = SCENES[0]
+        expected, seconds = self.whole_run(scene)
+        out = self.folder / "run.h5"
+        process = subprocess.Popen(command(scene, out), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        while len(frames(self.folder)) < 3 and process.poll() is None:
+            time.sleep(seconds / 1000)
+        process.send_signal(signal.SIGTERM)
+        complaint = process.communicate()[1]
+        self.assertEqual(process.returncode, 128 + signal.SIGTERM, complaint)
+        again = subprocess.run([SPHVV, "run", "--resume", str(out), "--out", str(out), "--every", every(scene), "--quiet"],
+                               capture_output=True, text=True, check=False)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assert_same(out, expected / "run.h5")
+
+    def test_a_full_disk_loses_nothing_that_was_written(self):
+        # A limit on the size of files stands for the full disk: the write fails in the middle of a snapshot.
+        scene = SCENES[0]
+        expected, _ = self.whole_run(scene)
+        out = self.folder / "run.h5"
+        size = (expected / "run_00000.h5").stat().st_size
+
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (int(1.5 * size), int(1.5 * size)))
+
+        first = subprocess.run(command(scene, out), capture_output=True, text=True, check=False)
+        self.assertEqual(first.returncode, 0, first.stderr)
+        before = content(out)
+        larger = (scene[0], scene[1], 2 * scene[2], scene[3])  # four times the file
+        result = subprocess.run(command(larger, out), capture_output=True, text=True, preexec_fn=limit, check=False)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        self.assertIn("run_00000.h5", result.stderr)
+        self.assertTrue(content(out) == before)
+        self.assertEqual([p.name for p in self.folder.iterdir() if p.is_file() and p.suffix not in (".h5", ".xdmf")], [])
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_a_folder_that_cannot_be_written_is_found_first(self):
+        folder = self.folder / "closed"
+        folder.mkdir(mode=0o500)
+        result = subprocess.run(command(SCENES[0], folder / "run.h5"), capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn(str(folder), result.stderr)
+
+
+if __name__ == "__main__":
+    SPHVV = sys.argv.pop()
+    unittest.main(verbosity=2)
