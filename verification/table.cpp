@@ -81,7 +81,9 @@ std::string band(const Expected& expected) {
     if (expected.low && expected.high) {
         return number(*expected.low, "%g") + "…" + number(*expected.high, "%g");
     }
-    return expected.low ? "≥ " + number(*expected.low, "%g") : "≤ " + number(*expected.high, "%g");
+    return expected.low    ? "≥ " + number(*expected.low, "%g")
+           : expected.high ? "≤ " + number(*expected.high, "%g")
+                           : "no order";
 }
 
 std::string verdict_line(const FieldStudy& study) {
