@@ -24,6 +24,7 @@ void add_run(CLI::App& app, Act& act);
 void add_operators(CLI::App& app, Act& act, const std::string& command_line);
 void add_verify(CLI::App& app, Act& act, const std::string& command_line);
 void add_calibrate(CLI::App& app, Act& act, const std::string& command_line);
+void add_stability(CLI::App& app, Act& act, const std::string& command_line);
 void add_report(CLI::App& app, Act& act);
 void add_compare(CLI::App& app, Act& act);
 void add_bless(CLI::App& app, Act& act);

@@ -3,6 +3,7 @@
 #include "sphvv/solver/operators.hpp"
 #include "sphvv/solver/schemes.hpp"
 #include "sphvv/verification/cases.hpp"
+#include "sphvv/verification/stability.hpp"
 
 #include "commands.hpp"
 #include "output.hpp"
@@ -68,6 +69,12 @@ Entries studies() {
             }
             entries.push_back({{"name", study.name}, {"summary", summary}, {"source", flow->source}});
         }
+    }
+    for (const verification::StabilityStudy& study : verification::stability_studies()) {
+        entries.push_back(
+            {{"name", study.name},
+             {"summary", std::string(to_string(study.tier)) + " tier, " + study.cost + ": " + study.summary},
+             {"source", study.source}});
     }
     return entries;
 }

@@ -71,6 +71,7 @@ int answer(int argc, char** argv) {
     cli::add_operators(app, act, command_line);
     cli::add_verify(app, act, command_line);
     cli::add_calibrate(app, act, command_line);
+    cli::add_stability(app, act, command_line);
     cli::add_report(app, act);
     cli::add_compare(app, act);
     cli::add_bless(app, act);

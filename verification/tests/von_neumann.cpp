@@ -19,8 +19,9 @@ const solver::Kernel& kernel_named(const char* name) {
     return solver::kernels::find(name);
 }
 
-// What decays least is a shear wave as long as the box, at the rate nu k^2 but for the errors of the sums,
-// below 1 % with this kernel.
+// What decays least is a shear wave as long as the box, at the rate nu k^2 but for the errors of the sums:
+// below 1 % with this kernel for Morris's operator; Monaghan and Cleary's takes the mean of cos^2 sin^2 over
+// the directions of the neighbours for 1/8, which a lattice misses by more.
 TEST(VonNeumann, LongWavesDecayAsInTheFluid) {
     constexpr int n = 400;
     constexpr double k = 2 * pi / n;
@@ -28,7 +29,8 @@ TEST(VonNeumann, LongWavesDecayAsInTheFluid) {
     LatticeState state{.kernel = &kernel_named("quintic_spline"), .h_over_dx = 1.3, .viscosity = 1};
     for (const bool monaghan_cleary : {false, true}) {
         state.monaghan_cleary = monaghan_cleary;
-        EXPECT_NEAR((1 - growth_factor(state, Stepping::projection, dt, n)) / (dt * k * k), 1, 0.01);
+        EXPECT_NEAR((1 - growth_factor(state, Stepping::projection, dt, n)) / (dt * k * k), 1,
+                    monaghan_cleary ? 0.1 : 0.01);
     }
 }
 

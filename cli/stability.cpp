@@ -1,0 +1,129 @@
+#include "sphvv/verification/stability.hpp"
+
+#include "sphvv/verification/document.hpp"
+#include "sphvv/verification/results.hpp"
+#include "sphvv/verification/scene.hpp"
+
+#include "commands.hpp"
+#include "output.hpp"
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <memory>
+
+namespace sphvv::cli {
+namespace {
+
+using verification::StabilityStudy;
+
+struct Options {
+    Common common;
+    std::vector<std::string> names;
+    std::vector<std::string> schemes;
+    std::string tier = "quick";
+    std::string out;
+    int threads = 0;
+};
+
+std::vector<const StabilityStudy*> studies_of(const Options& options) {
+    std::vector<const StabilityStudy*> wanted;
+    const auto all = verification::stability_studies();
+    for (const StabilityStudy& study : all) {
+        if (options.names.empty() && to_string(study.tier) == options.tier) {
+            wanted.push_back(&study);
+        }
+    }
+    for (const std::string& name : options.names) {
+        const auto found = std::ranges::find(all, name, &StabilityStudy::name);
+        if (found == all.end()) {
+            std::string names;
+            for (const StabilityStudy& study : all) {
+                names += (names.empty() ? "" : ", ") + study.name;
+            }
+            throw UserError("there is no stability study '" + name + "'; accepted: " + names);
+        }
+        wanted.push_back(&*found);
+    }
+    if (wanted.empty()) {
+        throw UserError("there is no stability study in the " + options.tier +
+                        " tier; accepted: quick, nightly");
+    }
+    return wanted;
+}
+
+int stability(const Options& options, const std::string& command_line) {
+    use_threads(options.threads);
+    const auto wanted = studies_of(options);
+    for (const std::string& scheme : options.schemes) {
+        verification::lattice_state({.scheme = scheme}); // refused before anything runs
+    }
+    check_writable(options.out, "--out");
+    check_writable(options.common.json, "--json");
+    remember_signals();
+    const verification::Provenance provenance = verification::current_provenance();
+    const auto begin = std::chrono::steady_clock::now();
+    verification::StabilityResults results;
+    std::exception_ptr ended; // early: the studies that are complete are worth keeping
+    {
+        ProgressLine line(options.common.quiet);
+        try {
+            for (const StabilityStudy* study : wanted) {
+                auto found =
+                    run_stability(*study, options.schemes, [&](const std::string& what, double fraction) {
+                        line.update(what, fraction);
+                        stop_if_signalled();
+                    });
+                line.done(study->name);
+                if (options.common.json != "-") {
+                    std::cout << markdown(found) << std::flush;
+                }
+                std::ranges::move(found.limits, std::back_inserter(results.limits));
+                std::ranges::move(found.maps, std::back_inserter(results.maps));
+            }
+        } catch (...) {
+            ended = std::current_exception();
+        }
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    auto document = verification::result_document(command_line, provenance, seconds, {});
+    document["kind"] = "stability";
+    add_to_document(results, document);
+    if (!options.common.json.empty()) {
+        write_text(options.common.json, document.dump(1) + "\n");
+    }
+    if (!options.out.empty()) {
+        verification::write_results_hdf5(document, options.out);
+    }
+    if (ended) {
+        std::rethrow_exception(ended);
+    }
+    return exit_status(results);
+}
+
+} // namespace
+
+void add_stability(CLI::App& app, Act& act, const std::string& command_line) {
+    const auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(
+        "stability", "largest stable time steps beside linear theory, and maps of stability");
+    command->add_option("names", options->names,
+                        "studies (see sphvv list studies); all of the tier if left out");
+    command
+        ->add_option(
+            "--scheme", options->schemes,
+            "schemes or variants in place of the study's own, e.g. wcsph:kernel=cubic_spline:h_over_dx=1.5")
+        ->delimiter(',');
+    command->add_option("--tier", options->tier, "quick, nightly or full")
+        ->check(CLI::IsMember({"quick", "nightly", "full"}))
+        ->capture_default_str();
+    command->add_option("--threads", options->threads, "threads (default: all processors)");
+    command->add_option("--out", options->out, "result file (HDF5) for sphvv report")->type_name("FILE.h5");
+    add_common(*command, options->common);
+    command->footer("Example: sphvv stability stability/acoustic --scheme wcsph:kernel=cubic_spline\n"
+                    "Exit status: 0 all verdicts pass; 1 one failed; 2 wrong use, nothing was run.");
+    command->callback([options, &act, &command_line] {
+        act = [options, &command_line] { return stability(*options, command_line); };
+    });
+}
+
+} // namespace sphvv::cli
