@@ -22,7 +22,7 @@ struct Options {
     std::vector<std::string> schemes;
     std::string tier = "quick";
     std::string out;
-    int threads = 0;
+    int threads = 1; // the lattices are too small to share
 };
 
 std::vector<const StabilityStudy*> studies_of(const Options& options) {
@@ -38,7 +38,8 @@ std::vector<const StabilityStudy*> studies_of(const Options& options) {
         if (found == all.end()) {
             std::string names;
             for (const StabilityStudy& study : all) {
-                names += (names.empty() ? "" : ", ") + study.name;
+                names += names.empty() ? "" : ", ";
+                names += study.name;
             }
             throw UserError("there is no stability study '" + name + "'; accepted: " + names);
         }
@@ -116,7 +117,7 @@ void add_stability(CLI::App& app, Act& act, const std::string& command_line) {
     command->add_option("--tier", options->tier, "quick, nightly or full")
         ->check(CLI::IsMember({"quick", "nightly", "full"}))
         ->capture_default_str();
-    command->add_option("--threads", options->threads, "threads (default: all processors)");
+    command->add_option("--threads", options->threads, "threads of a run")->capture_default_str();
     command->add_option("--out", options->out, "result file (HDF5) for sphvv report")->type_name("FILE.h5");
     add_common(*command, options->common);
     command->footer("Example: sphvv stability stability/acoustic --scheme wcsph:kernel=cubic_spline\n"

@@ -244,7 +244,7 @@ std::vector<Expectation> expectations() {
                    .where = {{"velocity_gradient", 0, 0, "difference"},
                              {"edge_velocity", 0, 0, "computed"},
                              {"minimum_spacing", 0.01, 1}},
-                   .order = {std::nullopt, std::nullopt, "Issa 2005 §6.2.2: on 40 rows"},
+                   .order = {0., std::nullopt, "Issa 2005 §6.2.2: on 40 rows"},
                    .text = "the particles of the thesis's step C keep their arrangement",
                    .waiver = "on 60 and 82 rows they do not: pairs collapse, and where the run is let go on "
                              "(minimum_spacing=0) a particle leaves through the wall after 7 to 15 s. The "

@@ -46,6 +46,11 @@ KINDS = [
     Kind("published_figures", "published figures agree", lambda figure: f"published figure {figure['id']}",
          lambda figure: f"published {figure['published']}, ours {figure['ours']}"
          + (" agrees, although it is known not to" if figure["agrees"] else ""), "agrees", lambda figure: figure["text"]),
+    Kind("stability_limits", "limits of the time step agree with linear theory", lambda limit: f"{limit['limit']} limit of {limit['scheme']}",
+         lambda limit: f"stable to {measured(limit['measured'])} of the published bound, {measured(limit['theory'])} in theory",
+         reason=lambda limit: limit["reason"]),
+    Kind("stability_maps", "maps of stability agree with linear theory", lambda chart: f"{chart['study']} of {chart['scheme']}",
+         lambda chart: f"{integer(chart['disagreements'])} points on which theory and runs differ", reason=lambda chart: chart["reason"]),
     Kind("seeded_faults", "seeded faults are caught", lambda fault: f"seeded fault {fault['name']}",
          lambda fault: f"not caught ({fault['caught_by']})" if fault["caught_by"] else "not caught", "caught",
          lambda fault: f"{fault['summary']} ({fault['file']})"),

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import jinja2
 from markupsafe import Markup
 
-from . import budgets, checks, figures, findings, histories, numbers, particles, profiles
+from . import budgets, checks, figures, findings, histories, numbers, particles, profiles, stability
 from .ladders import NORM_COLUMNS, front_table, ladder_table
 from .operators import Workbench
 from .tables import Column, Names, Span, Table, breakable
@@ -407,7 +407,7 @@ class Builder:
                 "checks_summary": "; ".join(filter(None, clauses)),
                 "stamp": stamp_of(self.results["files"]), "files": self.results["files"], **overview,
                 "groups": [self.group_view(group) for group in self.groups],
-                "operators": self.workbench.view(), "checks": checks.view(self),
+                "operators": self.workbench.view(), "checks": checks.view(self), "stability": stability.view(self),
                 "statuses": findings.STATUSES, "glossary": findings.GLOSSARY, "norms": findings.NORMS,
                 "operator_words": findings.OPERATOR_WORDS}
 
@@ -417,6 +417,8 @@ class Builder:
         kernels = findings.unique(check["kernel"] for check in self.results["kernel_checks"] or self.results["known_errors"])
         counted = [(len(self.workbench.names), "operator"), (len(kernels), "kernel"),
                    (len(self.results["published_figures"]) if not self.workbench.names else 0, "published figure"),
+                   (len(self.results["stability_limits"]), "step limit"),
+                   (len(self.results["stability_maps"]), "stability map"),
                    (len(self.results["seeded_faults"]), "seeded fault")]
         return (cases if len(cases) <= 3 else [f"{len(cases)} cases"]) + [findings.plural(*each) for each in counted if each[0]]
 

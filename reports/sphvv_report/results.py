@@ -70,6 +70,13 @@ PUBLISHED_FIGURE = {"id": "text", "text": "text", "published": "text", "source":
 CONSISTENCY_SUM = {"jitter": "number", "h_over_dx": "number", "neighbours": "number", "worst_zeroth": "number",
                    "worst_first": "number"}
 SEEDED_FAULT = {"name": "text", "file": "text", "summary": "text", "caught": "flag", "caught_by": "text", "seconds": "number"}
+STABILITY_LIMIT = {"study": "text", "scheme": "text", "kernel": "text", "h_over_dx": "number", "limit": "text", "published": "number",
+                   "theory": "number", "measured": "number", "verdict": "text", "passes": "flag", "reason": "text", "runs": "number",
+                   "seconds": "number"}
+STABILITY_MAP = {"study": "text", "scheme": "text", "x_name": "text", "x": "numbers", "y_name": "text", "y": "numbers", "theory": "numbers",
+                 "measured": "numbers", "grows": "numbers", "unstable": "number", "disagreements": "number", "undecided": "number",
+                 "verdict": "text", "passes": "flag", "reason": "text", "seconds?": "number"}
+STABILITY = {"stability_limits?": [STABILITY_LIMIT], "stability_maps?": [STABILITY_MAP]}
 WORKBENCH = {"operators?": [OPERATOR], "operator_studies?": [OPERATOR_STUDY], "operator_properties?": [OPERATOR_PROPERTY],
              "operator_costs?": [OPERATOR_COST], "operator_fronts?": [OPERATOR_FRONT], "kernel_checks?": [KERNEL_CHECK],
              "known_errors?": [KERNEL_CHECK], "published_figures?": [PUBLISHED_FIGURE],
@@ -79,10 +86,10 @@ PROVENANCE = {"version": "text", "revision": "text", "tree_clean": "flag", "comp
               "seconds?": "number"}
 RESULT = {"format": "text", "format_version": "number", "command": "text", "provenance": PROVENANCE,
           "cases": [CASE], "studies": [STUDY], "runs": [RUN], "fronts": [FRONT], "claims?": [CLAIM],
-          **WORKBENCH}
+          **WORKBENCH, **STABILITY}
 # A file that holds none of these says nothing that a report could show.
 EVIDENCE = ("studies", "operator_studies", "operator_properties", "kernel_checks", "known_errors", "published_figures",
-            "seeded_faults")
+            "seeded_faults", "stability_limits", "stability_maps")
 VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", "NONE")
 
 
@@ -344,6 +351,15 @@ def check_profile(profile, path):
         raise ValueError(f"{path}: coordinate, ours and exact differ in length")
 
 
+def check_map(chart, path):
+    points = len(chart["x"]) * len(chart["y"])
+    for name in ("theory", "measured", "grows"):
+        if len(chart[name]) != points or not points:
+            raise ValueError(f"{path}.{name} is not one value for each of x and y")
+    if any(None in chart[name] for name in ("x", "y", "grows")) or chart["unstable"] is None:
+        raise ValueError(f"{path}: x, y, grows and unstable must be finite")
+
+
 def check_result(tree):
     """Checks the tree of a file; ValueError names the first member that is missing or wrong."""
     check_object(tree, RESULT, "")
@@ -358,6 +374,8 @@ def check_result(tree):
         check_picture(run["picture"], f"runs[{index}].picture")
         for number, profile in enumerate(run["profiles"]):
             check_profile(profile, f"runs[{index}].profiles[{number}]")
+    for index, chart in enumerate(tree["stability_maps"]):
+        check_map(chart, f"stability_maps[{index}]")
     if not any(tree[kind] for kind in EVIDENCE):
         raise ValueError("it holds no study, no check and no seeded fault")
 

@@ -602,10 +602,26 @@ class Odd(WithFolder):
 
     def test_each_kind_of_evidence_alone(self):
         for member in results.EVIDENCE[1:]:
-            tree = synthetic.workbench()
-            tree.update({name.rstrip("?"): [] for name in results.WORKBENCH if name != member + "?"})
+            tree = {**synthetic.workbench(), **synthetic.stability()}
+            tree.update({name.rstrip("?"): [] for name in {**results.WORKBENCH, **results.STABILITY} if name != member + "?"})
             with self.subTest(member):
                 self.report(tree, member)
+
+    def test_stability(self):
+        tree = {**synthetic.small(), **synthetic.stability()}
+        files = self.report(tree, "stability")
+        text = Page(files["index.html"].decode()).all_text()
+        self.assertIn("2 of 3 limits of the time step agree with linear theory; 0 of 1 maps of stability agree", text)
+        self.assertIn("acoustic limit of isph_df", text)  # among the findings
+        self.assertIn("stable to", text)
+        table = files["tables/stability-limits.csv"].decode()
+        self.assertIn("isph_df", table)
+        picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map"))
+        self.assertIn("theory says otherwise", picture)
+        for broken in ({"grows": [1.0]}, {"theory": [1.0] * 5}, {"x": [None, 1.0, 2.0]}, {"unstable": None}):
+            tree["stability_maps"] = [{**synthetic.stability()["stability_maps"][0], **broken}]
+            with self.subTest(broken), self.assertRaises(ValueError):
+                results.check_result(json.loads(json.dumps(tree)))
 
     def test_seeded_faults_alone_as_json(self):
         tree = {key: value for key, value in synthetic.workbench().items() if not key.startswith(("operator", "kernel", "known", "publ", "cons"))}

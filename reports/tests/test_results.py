@@ -90,7 +90,7 @@ class Reading(InFolder):
 
     def test_unknown_members_are_let_pass(self):
         tree = synthetic.small()
-        tree["stability_maps"] = [{"name": "eta"}]
+        tree["weather_maps"] = [{"name": "eta"}]
         tree["studies"][0]["profile"] = {"x": [1.0, 2.0]}
         read_result(synthetic.write(self.path, tree))
 

@@ -1,0 +1,92 @@
+"""Limits of the time step beside linear theory, and maps of growth over two parameters: their tables and pictures."""
+
+import matplotlib
+import numpy
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from . import figures
+from .operators import file_column, with_file
+from .tables import Column, Table
+
+STABLE, GROWS, ENDED = "#eef3f7", "#e8a33d", "#9c2a2a"
+NOTE = ("Each number is the largest stable step over the published bound, which is 0.4 h/c0 for sound and 0.125 h²/ν for viscosity. "
+        "Theory: von Neumann analysis of the discrete equations on a square lattice; measured: bisection with the solver, to 0.5 %. "
+        "Unstable is what grows by more than √2 in 200 steps. – where there is no limit.")
+
+
+def limits_table(names, limits):
+    rows = with_file(limits, ratio=lambda row: row["measured"] / row["theory"] if row["measured"] is not None and row["theory"] else None)
+    return Table(names.unique("stability-limits"), "Largest stable time steps, over the published bound",
+                 [Column("limit", "bound"), Column("scheme", "scheme"), Column("kernel", "kernel"), Column("h_over_dx", "h/dx", "significant", latex=r"$h/\Delta x$"),
+                  Column("theory", "theory", "significant"), Column("measured", "measured", "significant"), Column("ratio", "ratio", "significant"),
+                  Column("verdict", "verdict"), Column("study", "study", shown=False), Column("published", "published bound [s]", shown=False),
+                  Column("passes", "passes", shown=False), Column("reason", "reason", shown=False), Column("runs", "runs", shown=False),
+                  Column("seconds", "seconds", shown=False)] + file_column(limits), rows, [NOTE])
+
+
+def map_table(names, chart):
+    """One row a point of the map."""
+    points = [(x, y) for y in chart["y"] for x in chart["x"]]
+    rows = [{"x": x, "y": y, "theory": theory, "measured": measured, "grows": "yes" if grows else "no"}
+            for (x, y), theory, measured, grows in zip(points, chart["theory"], chart["measured"], chart["grows"])]
+    return Table(names.unique(chart["study"], chart["scheme"]), f"{chart['study']}: {chart['scheme']}",
+                 [Column("x", chart["x_name"], "significant"), Column("y", chart["y_name"], "significant"),
+                  Column("theory", "growth per step, theory", "significant"), Column("measured", "growth per step, measured", "significant"),
+                  Column("grows", "grows")], rows)
+
+
+def edges(values):
+    """Of the cells around the values."""
+    middle = [(a + b) / 2 for a, b in zip(values, values[1:])]
+    first, last = (values[1] - values[0], values[-1] - values[-2]) if len(values) > 1 else (1, 1)
+    return [values[0] - first / 2, *middle, values[-1] + last / 2]
+
+
+def map_picture(name, chart, stamp):
+    """What the runs did, cell by cell, under the boundary of theory; a cross where the two disagree."""
+    x, y = chart["x"], chart["y"]
+    shape = (len(y), len(x))
+    grows = numpy.array(chart["grows"], dtype=float).reshape(shape)
+    ended = numpy.array([value is None for value in chart["measured"]]).reshape(shape)
+    theory = numpy.array([numpy.nan if value is None else value for value in chart["theory"]], dtype=float).reshape(shape)
+    handles = [Patch(facecolor=STABLE, edgecolor="#c8d2da", label="stays"), Patch(facecolor=GROWS, label="grows"),
+               Patch(facecolor=ENDED, label="grows until the run ends"), Line2D([], [], color="black", label="theory: growth begins"),
+               Line2D([], [], color="black", marker="x", linestyle="", label="theory says otherwise")]
+    with matplotlib.rc_context({**figures.STYLE, "svg.hashsalt": name}):
+        canvas, [axes] = figures.new_canvas(figures.shorten(chart["scheme"], 70), 1, len(handles))
+        axes.grid(False)
+        axes.pcolormesh(edges(x), edges(y), grows + ended, cmap=matplotlib.colors.ListedColormap([STABLE, GROWS, ENDED]), vmin=-0.5, vmax=2.5,
+                        edgecolors="white", linewidth=0.6)
+        growing = numpy.where(theory > chart["unstable"], 1.0, 0.0)
+        for across in (False, True):  # the edges between cells on whose stability theory differs
+            draw_steps(axes, edges(x), edges(y), growing, across)
+        wrong = numpy.argwhere((grows > 0) != (growing > 0))
+        axes.plot([x[column] for _, column in wrong], [y[row] for row, _ in wrong], linestyle="", marker="x", color="black", markersize=5)
+        axes.set_xlabel(figures.plain(chart["x_name"]))
+        figures.label_above(axes, chart["y_name"])
+        figures.add_legend(canvas, handles)
+        svg = figures.finish(canvas, name, f"Stability of {chart['scheme']}",
+                             f"Map over {chart['x_name']} and {chart['y_name']}: {int(grows.sum())} of {grows.size} points grow.", stamp)
+    return figures.Picture(name, f"{chart['scheme']}: growth of small disturbances of a square lattice, {shape[1]} × {shape[0]} runs. "
+                                 f"{chart['reason']}.", svg)
+
+
+def draw_steps(axes, x, y, growing, across):
+    rows, columns = growing.shape
+    for row in range(rows):
+        for column in range(columns):
+            if across and row + 1 < rows and growing[row, column] != growing[row + 1, column]:
+                axes.plot([x[column], x[column + 1]], [y[row + 1]] * 2, color="black", linewidth=1.4, marker="")
+            if not across and column + 1 < columns and growing[row, column] != growing[row, column + 1]:
+                axes.plot([x[column + 1]] * 2, [y[row], y[row + 1]], color="black", linewidth=1.4, marker="")
+
+
+def view(page):
+    """The chapter on stability; None where the files hold nothing of it."""
+    limits, maps = page.results["stability_limits"], page.results["stability_maps"]
+    if not limits and not maps:
+        return None
+    return {"limits": page.keep(limits_table(page.table_names, limits)) if limits else None,
+            "maps": [{"plot": page.draw(map_picture(page.figure_names.unique(chart["study"], chart["scheme"]), chart, page.stamp([chart["result"]]))),
+                      "table": page.keep(map_table(page.table_names, chart))} for chart in maps]}
