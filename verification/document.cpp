@@ -2,6 +2,7 @@
 
 #include "sphvv/analytic/solutions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -52,6 +53,12 @@ Tree case_tree(const LadderResult& result) {
         parameters.push_back(
             {{"name", key.name}, {"value", key.value}, {"unit", key.unit}, {"summary", key.summary}});
     }
+    Tree variants = Tree::array();
+    for (const auto& [variant, name] : flow.variant_names) {
+        if (std::ranges::find(result.request.schemes, variant_of(variant)) != result.request.schemes.end()) {
+            variants.push_back({{"scheme", variant_of(variant).label()}, {"name", name}});
+        }
+    }
     return {{"name", flow.name},
             {"group", result.group},
             {"summary", flow.summary},
@@ -61,7 +68,8 @@ Tree case_tree(const LadderResult& result) {
             {"dimension", solution.dimension},
             {"reference_length", scene.case_settings.number(flow.reference_length)},
             {"domain", domain_text(solution.domain(solution_values(scene)), solution.dimension)},
-            {"parameters", parameters}};
+            {"parameters", parameters},
+            {"variants", variants}};
 }
 
 Tree sample_tree(const Sample& s) {

@@ -252,6 +252,15 @@ std::vector<Expectation> expectations() {
     return all;
 }
 
+std::map<std::string, std::string> variant_names() {
+    return {{step_a, "thesis, step A"},
+            {step_b, "thesis, step B"},
+            {step_c, "thesis, step C"},
+            {step_c_ordered, "thesis, step C, ordered"},
+            {step_c_edge_imposed, "thesis, step C, u_edge imposed"},
+            {improved, "wcsph, gradient exact at the wall"}};
+}
+
 std::vector<Study> studies(const std::string& name) {
     const std::vector<std::string> steps{step_a, step_b, step_c_edge_imposed, step_c, improved};
     // Beside the thesis: a box as narrow as the supports allow, c0 = 10 (u_max + sqrt(g H)) = 35 m/s in place

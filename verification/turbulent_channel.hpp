@@ -30,5 +30,6 @@ std::vector<Claim> claims(const char* id, const char* source);
 /// smooth channel, so that no power of dx describes the error.
 std::vector<Expectation> expectations();
 std::vector<Study> studies(const std::string& name);
+std::map<std::string, std::string> variant_names();
 
 } // namespace sphvv::verification::turbulent_channel

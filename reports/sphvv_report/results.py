@@ -20,7 +20,8 @@ DEEPEST = 32  # levels of groups; a file that nests deeper is damaged or made to
 # The members a report stands on. A trailing "?" marks one that may be missing (JSON null is "no member").
 # A list holds the schema of its entries; "number" and "text" entries of a table may be null.
 PARAMETER = {"name": "text", "value?": "any", "unit?": "text", "summary?": "text"}
-CASE = {"name": "text", "summary?": "text", "equations?": "text", "source?": "text", "reference?": "text", "dimension?": "number",
+VARIANT = {"scheme": "text", "name": "text"}
+CASE = {"name": "text", "group?": "text", "variants?": [VARIANT], "summary?": "text", "equations?": "text", "source?": "text", "reference?": "text", "dimension?": "number",
         "reference_length?": "number", "domain?": "text", "parameters?": [PARAMETER]}
 SAMPLE = {"n": "number", "h": "number", "dx": "number", "particles": "number", "dt": "number", "steps": "number",
           "l1": "number", "l2": "number", "linf": "number", "l1_abs": "number", "l2_abs": "number", "linf_abs": "number",
@@ -380,6 +381,16 @@ def check_result(tree):
         raise ValueError("it holds no study, no check and no seeded fault")
 
 
+def name_variants(tree):
+    """Calls variants of schemes by the short names that the file has for them, group by group."""
+    names = {(case["group"], variant["scheme"]): variant["name"] for case in tree["cases"] for variant in case["variants"]}
+    for kind in ("studies", "runs", "fronts"):
+        for entry in tree[kind]:
+            for named in [entry] if kind != "fronts" else entry["curves"] + entry["rows"]:
+                for member in {"scheme", "than"} & named.keys():
+                    named[member] = names.get((entry["group"], named[member]), named[member])
+
+
 def read_result(path):
     """Reads and checks one result file. Raises ResultError. The tree gains `file`, the file's own name."""
     refuse_unreadable(path)
@@ -388,6 +399,7 @@ def read_result(path):
         check_result(tree)
     except ValueError as error:
         raise ResultError(f"{path}: not a complete result file: {error}") from None
+    name_variants(tree)
     tree["file"] = clean_text(os.path.basename(path))
     return tree
 

@@ -88,6 +88,18 @@ class Reading(InFolder):
             column = theirs.get("picture", {}).get("speed")
             self.assertEqual(ours["picture"]["speed"], column and [None if math.isnan(value) else value for value in column])
 
+    def test_variants_go_by_their_names(self):
+        tree = synthetic.small()
+        case, scheme = tree["cases"][0], tree["studies"][0]["scheme"]
+        case.update(group=tree["studies"][0]["group"], variants=[{"scheme": scheme, "name": "step A"}])
+        read = read_result(synthetic.write(self.path, tree))
+        self.assertEqual([study["scheme"] for study in read["studies"]],
+                         ["step A" if study["scheme"] == scheme else study["scheme"] for study in tree["studies"]])
+        self.assertEqual({run["scheme"] for run in read["runs"] if run["group"] == case["group"]} & {scheme}, set())
+        for front, written in zip(read["fronts"], tree["fronts"]):
+            self.assertEqual([curve["scheme"] == "step A" for curve in front["curves"]],
+                             [curve["scheme"] == scheme for curve in written["curves"]])
+
     def test_unknown_members_are_let_pass(self):
         tree = synthetic.small()
         tree["weather_maps"] = [{"name": "eta"}]

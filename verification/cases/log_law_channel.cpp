@@ -30,6 +30,7 @@ const Case& log_law_channel() {
                                                      {{"b", scene.case_settings.text("b")}});
                       },
                   .complete = turbulent_channel::add_means},
+        .variant_names = turbulent_channel::variant_names(),
     };
     return flow;
 }

@@ -33,6 +33,7 @@ const Case& log_law_channel_rough() {
                                                               scene.case_settings.number("depth"))}});
                       },
                   .complete = turbulent_channel::add_means},
+        .variant_names = turbulent_channel::variant_names(),
     };
     return flow;
 }
