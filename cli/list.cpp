@@ -70,6 +70,10 @@ Entries studies() {
             entries.push_back({{"name", study.name}, {"summary", summary}, {"source", flow->source}});
         }
     }
+    entries.push_back(
+        {{"name", "stability/extreme"},
+         {"summary", "quick tier, 20 s: scenes at and past the edge of what the schemes are made for"},
+         {"source", "each row's own"}});
     for (const verification::StabilityStudy& study : verification::stability_studies()) {
         entries.push_back(
             {{"name", study.name},

@@ -1,6 +1,7 @@
 #include "sphvv/verification/stability.hpp"
 
 #include "sphvv/verification/document.hpp"
+#include "sphvv/verification/extreme.hpp"
 #include "sphvv/verification/results.hpp"
 #include "sphvv/verification/scene.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 
 using verification::StabilityStudy;
 
+const std::string extreme = "stability/extreme"; ///< quick tier
+
 struct Options {
     Common common;
     std::vector<std::string> names;
@@ -24,6 +27,15 @@ struct Options {
     std::string out;
     int threads = 1; // the lattices are too small to share
 };
+
+[[noreturn]] void refuse_study(const std::string& name) {
+    std::string names = extreme;
+    for (const StabilityStudy& study : verification::stability_studies()) {
+        names += ", ";
+        names += study.name;
+    }
+    throw UserError("there is no stability study '" + name + "'; accepted: " + names);
+}
 
 std::vector<const StabilityStudy*> studies_of(const Options& options) {
     std::vector<const StabilityStudy*> wanted;
@@ -34,18 +46,16 @@ std::vector<const StabilityStudy*> studies_of(const Options& options) {
         }
     }
     for (const std::string& name : options.names) {
+        if (name == extreme) {
+            continue;
+        }
         const auto found = std::ranges::find(all, name, &StabilityStudy::name);
         if (found == all.end()) {
-            std::string names;
-            for (const StabilityStudy& study : all) {
-                names += names.empty() ? "" : ", ";
-                names += study.name;
-            }
-            throw UserError("there is no stability study '" + name + "'; accepted: " + names);
+            refuse_study(name);
         }
         wanted.push_back(&*found);
     }
-    if (wanted.empty()) {
+    if (wanted.empty() && std::ranges::find(options.names, extreme) == options.names.end()) {
         throw UserError("there is no stability study in the " + options.tier +
                         " tier; accepted: quick, nightly");
     }
@@ -64,6 +74,7 @@ int stability(const Options& options, const std::string& command_line) {
     const verification::Provenance provenance = verification::current_provenance();
     const auto begin = std::chrono::steady_clock::now();
     verification::StabilityResults results;
+    std::vector<verification::ExtremeResult> scenes;
     std::exception_ptr ended; // early: the studies that are complete are worth keeping
     {
         ProgressLine line(options.common.quiet);
@@ -81,6 +92,20 @@ int stability(const Options& options, const std::string& command_line) {
                 std::ranges::move(found.limits, std::back_inserter(results.limits));
                 std::ranges::move(found.maps, std::back_inserter(results.maps));
             }
+            const bool quick = options.names.empty() && options.tier == "quick" && options.schemes.empty();
+            if (quick || std::ranges::find(options.names, extreme) != options.names.end()) {
+                const auto rows = verification::extreme_rows();
+                for (const auto& row : rows) {
+                    line.update(extreme + "  " + row.name + "  " + row.scheme,
+                                static_cast<double>(scenes.size()) / static_cast<double>(rows.size()));
+                    scenes.push_back(run_extreme(row));
+                    stop_if_signalled();
+                }
+                line.done(extreme);
+                if (options.common.json != "-") {
+                    std::cout << verification::markdown(scenes) << std::flush;
+                }
+            }
         } catch (...) {
             ended = std::current_exception();
         }
@@ -89,6 +114,7 @@ int stability(const Options& options, const std::string& command_line) {
     auto document = verification::result_document(command_line, provenance, seconds, {});
     document["kind"] = "stability";
     add_to_document(results, document);
+    verification::add_to_document(scenes, document);
     if (!options.common.json.empty()) {
         write_text(options.common.json, document.dump(1) + "\n");
     }
@@ -98,7 +124,7 @@ int stability(const Options& options, const std::string& command_line) {
     if (ended) {
         std::rethrow_exception(ended);
     }
-    return exit_status(results);
+    return std::max(exit_status(results), verification::exit_status(scenes));
 }
 
 } // namespace

@@ -51,6 +51,8 @@ KINDS = [
          reason=lambda limit: limit["reason"]),
     Kind("stability_maps", "maps of stability agree with linear theory", lambda chart: f"{chart['study']} of {chart['scheme']}",
          lambda chart: f"{integer(chart['disagreements'])} points on which theory and runs differ", reason=lambda chart: chart["reason"]),
+    Kind("extreme_rows", "extreme scenes end as they must", lambda row: f"{row['name']}, {row['scheme']}",
+         lambda row: f"must be: {row['must']}", reason=lambda row: row["reason"]),
     Kind("seeded_faults", "seeded faults are caught", lambda fault: f"seeded fault {fault['name']}",
          lambda fault: f"not caught ({fault['caught_by']})" if fault["caught_by"] else "not caught", "caught",
          lambda fault: f"{fault['summary']} ({fault['file']})"),

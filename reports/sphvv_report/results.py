@@ -77,7 +77,10 @@ STABILITY_LIMIT = {"study": "text", "scheme": "text", "kernel": "text", "h_over_
 STABILITY_MAP = {"study": "text", "scheme": "text", "x_name": "text", "x": "numbers", "y_name": "text", "y": "numbers", "theory": "numbers",
                  "measured": "numbers", "grows": "numbers", "unstable": "number", "disagreements": "number", "undecided": "number",
                  "verdict": "text", "passes": "flag", "reason": "text", "seconds?": "number"}
-STABILITY = {"stability_limits?": [STABILITY_LIMIT], "stability_maps?": [STABILITY_MAP]}
+EXTREME_ROW = {"name": "text", "scheme": "text", "must": "text", "why": "text", "fate": "text", "bound": "number", "survived": "flag",
+               "diagnosis": "text", "error": "number", "steps": "number", "seconds": "number", "verdict": "text", "passes": "flag",
+               "waiver": "text", "reason": "text"}
+STABILITY = {"stability_limits?": [STABILITY_LIMIT], "stability_maps?": [STABILITY_MAP], "extreme_rows?": [EXTREME_ROW]}
 WORKBENCH = {"operators?": [OPERATOR], "operator_studies?": [OPERATOR_STUDY], "operator_properties?": [OPERATOR_PROPERTY],
              "operator_costs?": [OPERATOR_COST], "operator_fronts?": [OPERATOR_FRONT], "kernel_checks?": [KERNEL_CHECK],
              "known_errors?": [KERNEL_CHECK], "published_figures?": [PUBLISHED_FIGURE],
@@ -90,7 +93,7 @@ RESULT = {"format": "text", "format_version": "number", "command": "text", "prov
           **WORKBENCH, **STABILITY}
 # A file that holds none of these says nothing that a report could show.
 EVIDENCE = ("studies", "operator_studies", "operator_properties", "kernel_checks", "known_errors", "published_figures",
-            "seeded_faults", "stability_limits", "stability_maps")
+            "seeded_faults", "stability_limits", "stability_maps", "extreme_rows")
 VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", "NONE")
 
 

@@ -36,6 +36,16 @@ def map_table(names, chart):
                   Column("grows", "grows")], rows)
 
 
+def extreme_table(names, scenes):
+    rows = with_file(scenes, happened=lambda row: row["diagnosis"] or ("to the end" if row["survived"] else row["reason"]))
+    return Table(names.unique("extreme-scenes"), "Scenes at and past the edge of what the schemes are made for",
+                 [Column("name", "scene"), Column("scheme", "scheme"), Column("must", "what must become of it"), Column("why", "why"),
+                  Column("bound", "bound", "scientific"), Column("error", "error", "scientific"), Column("happened", "what happened"),
+                  Column("verdict", "verdict"), Column("waiver", "reason of the waiver"), Column("fate", "fate", shown=False),
+                  Column("diagnosis", "diagnosis", shown=False), Column("steps", "steps", shown=False), Column("seconds", "seconds", shown=False),
+                  Column("reason", "reason", shown=False)] + file_column(scenes), rows, style="cards")
+
+
 def edges(values):
     """Of the cells around the values."""
     middle = [(a + b) / 2 for a, b in zip(values, values[1:])]
@@ -85,8 +95,10 @@ def draw_steps(axes, x, y, growing, across):
 def view(page):
     """The chapter on stability; None where the files hold nothing of it."""
     limits, maps = page.results["stability_limits"], page.results["stability_maps"]
-    if not limits and not maps:
+    scenes = page.results["extreme_rows"]
+    if not limits and not maps and not scenes:
         return None
-    return {"limits": page.keep(limits_table(page.table_names, limits)) if limits else None,
+    return {"extreme": page.keep(extreme_table(page.table_names, scenes)) if scenes else None,
+            "limits": page.keep(limits_table(page.table_names, limits)) if limits else None,
             "maps": [{"plot": page.draw(map_picture(page.figure_names.unique(chart["study"], chart["scheme"]), chart, page.stamp([chart["result"]]))),
                       "table": page.keep(map_table(page.table_names, chart))} for chart in maps]}

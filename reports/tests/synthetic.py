@@ -440,7 +440,10 @@ def stability():
             "stability_maps": [{"study": "stability/tensile_map", "scheme": "wcsph", "x_name": "h/dx", "x": [1.0, 1.5, 2.0], "y_name": "p/(rho c0^2)",
                                 "y": [-0.01, 0.01], "theory": [1.1, 1.1, 1.1, 1.0, 1.0, 1.1], "measured": [None, 1.1, 1.1, 1.0, 1.1, 1.1],
                                 "grows": [1.0, 1.0, 1.0, 0.0, 1.0, 1.0], "unstable": 1.0017, "disagreements": 1, "undecided": 0,
-                                "verdict": "FAIL", "passes": False, "reason": "1 of 6 points", "seconds": 1.0}]}
+                                "verdict": "FAIL", "passes": False, "reason": "1 of 6 points", "seconds": 1.0}],
+            "extreme_rows": [{"name": "a single particle", "scheme": "wcsph", "must": "goes straight on", "why": "no neighbour", "fate": "bounded",
+                              "bound": 1e-12, "survived": True, "diagnosis": "", "error": 2.0, "steps": 200, "seconds": 0.1, "verdict": "FAIL",
+                              "passes": False, "waiver": "", "reason": "the error is above its bound"}]}
 
 
 if __name__ == "__main__":

@@ -614,6 +614,8 @@ class Odd(WithFolder):
         self.assertIn("2 of 3 limits of the time step agree with linear theory; 0 of 1 maps of stability agree", text)
         self.assertIn("acoustic limit of isph_df", text)  # among the findings
         self.assertIn("stable to", text)
+        self.assertIn("0 of 1 extreme scenes end as they must", text)
+        self.assertIn("the error is above its bound", text)
         table = files["tables/stability-limits.csv"].decode()
         self.assertIn("isph_df", table)
         picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map"))
