@@ -143,8 +143,8 @@ struct Case {
     /// Direction of the profiles that are drawn, and the component of the velocity in them; none if negative.
     int profile_direction = -1;
     SceneHooks hooks{};
-    /// What the report calls variants whose settings are too many for a name: name by variant, as variant_of()
-    /// reads it.
+    /// What the report calls variants whose settings are too many for a name: name by variant, as
+    /// variant_of() reads it.
     std::map<std::string, std::string> variant_names{};
 };
 

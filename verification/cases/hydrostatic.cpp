@@ -746,6 +746,25 @@ std::vector<std::string> cure_labels() {
     return labels;
 }
 
+std::map<std::string, std::string> variant_names() {
+    std::map<std::string, std::string> names{{undamped(), "Issa's column"},
+                                             {damped(), "Issa's column, damped"},
+                                             {damped_below(), "Issa's column, damped at the bed"}};
+    for (const char* wall : {"mirror", "fixed", "repulsive", "repulsive_lennard_jones", "repulsive_normal"}) {
+        for (const char* kernel : {quintic, wendland}) {
+            for (const bool damps : {true, false}) {
+                for (const char* points : {"1", "4"}) {
+                    std::string name = std::string("wcsph, ") + wall;
+                    name += std::string_view(points) == "1" ? "" : ", 4 points per dx";
+                    name += std::string_view(kernel) == quintic ? "" : ", wendland_c2";
+                    names[on_wall(wall, kernel, damps, points)] = name + (damps ? ", damped" : "");
+                }
+            }
+        }
+    }
+    return names;
+}
+
 /// On every wall that a compressible column may have.
 std::vector<std::string> wall_labels(const char* kernel, bool damps) {
     std::vector<std::string> labels;
@@ -888,6 +907,7 @@ const Case& hydrostatic() {
                   .arrange = arrange,
                   .prepare = prepare,
                   .complete = add_damping},
+        .variant_names = variant_names(),
     };
     return flow;
 }

@@ -91,6 +91,18 @@ std::string damped(const std::string& scheme, const char* peclet) {
     return scheme + ":surface_peclet=" + peclet;
 }
 
+std::map<std::string, std::string> variant_names() {
+    std::map<std::string, std::string> names{
+        {with_ls, "isph_dfs, p = 0 at the particles"},
+        {improved, "isph_dfs, p = 0 at the surface"},
+        {published, "isph_dfs, even pressure at walls"},
+        {damped(improved, "30"), "isph_dfs, p = 0 at the surface, Pe 30"}};
+    for (const char* peclet : {"7", "30", "150"}) {
+        names[damped(with_ls, peclet)] = std::string("isph_dfs, p = 0 at the particles, Pe ") + peclet;
+    }
+    return names;
+}
+
 /// Largest relative error of the elevations at 0.2, 0.3 and 0.5 m from the plate at a time.
 double elevation_error(const Deviation& at) {
     double largest = 0;
@@ -298,6 +310,7 @@ const Case& impulsive_plate() {
                                         const analytic::Values& values) { return values.at("speed"); },
                   .compares = compares,
                   .complete = add_impulse},
+        .variant_names = variant_names(),
     };
     return flow;
 }
