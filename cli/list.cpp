@@ -67,18 +67,29 @@ Entries studies() {
             for (const int n : study.ladder) {
                 summary += " " + std::to_string(n);
             }
-            entries.push_back({{"name", study.name}, {"summary", summary}, {"source", flow->source}});
+            entries.push_back({{"name", study.name},
+                               {"summary", summary},
+                               {"source", flow->source},
+                               {"command", "verify"},
+                               {"tier", to_string(study.tier)},
+                               {"cost", study.cost}});
         }
     }
     entries.push_back(
         {{"name", "stability/extreme"},
-         {"summary", "quick tier, 20 s: scenes at and past the edge of what the schemes are made for"},
-         {"source", "each row's own"}});
+         {"summary", "quick tier, 5 s: scenes at and past the edge of what the schemes are made for"},
+         {"source", "each row's own"},
+         {"command", "stability"},
+         {"tier", "quick"},
+         {"cost", "5 s"}});
     for (const verification::StabilityStudy& study : verification::stability_studies()) {
         entries.push_back(
             {{"name", study.name},
              {"summary", std::string(to_string(study.tier)) + " tier, " + study.cost + ": " + study.summary},
-             {"source", study.source}});
+             {"source", study.source},
+             {"command", "stability"},
+             {"tier", to_string(study.tier)},
+             {"cost", study.cost}});
     }
     return entries;
 }
