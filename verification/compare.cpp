@@ -24,13 +24,17 @@ constexpr std::array error_names{"l1", "l2", "linf"};
 constexpr std::array work_names{"steps", "pair_evaluations", "solver_iterations", "matrix_entries",
                                 "undetermined"};
 /// What a check demands: loosening one of these turns a wrong answer into a right one.
-constexpr std::array demand_names{"bound", "at_least", "expected", "tolerance", "reference", "is_bound"};
+constexpr std::array demand_names{"bound",     "at_least", "expected", "tolerance",
+                                  "reference", "is_bound", "theory",   "fate"};
 
-/// Lists of checks, the members that identify one, and the one that says whether it is as it must be.
+/// Lists of checks, the members that identify one, the one that says whether it is as it must be, and what it
+/// measured.
 struct CheckList {
     const char* name;
     std::vector<const char*> identity;
     const char* passes;
+    const char* value = "value";
+    double round_off = round_off_of_operators;
 };
 const std::vector<CheckList>& check_lists() {
     static const std::vector<CheckList> lists{
@@ -38,6 +42,10 @@ const std::vector<CheckList>& check_lists() {
         {"kernel_checks", {"kernel", "dimension", "check"}, "passes"},
         {"known_errors", {"kernel", "dimension", "check", "why"}, "passes"},
         {"published_figures", {"id"}, "agrees"},
+        // A bisection ends at 0.5 %; the disagreements of a map are what its verdict is made of.
+        {"stability_limits", {"scheme", "study", "limit"}, "passes", "measured", round_off_of_schemes},
+        {"stability_maps", {"scheme", "study"}, "passes", "disagreements"},
+        {"extreme_rows", {"scheme", "name"}, "passes", "error", round_off_of_schemes},
     };
     return lists;
 }
@@ -341,8 +349,9 @@ private:
         for (const char* name : demand_names) {
             compare_demand(before, after, name);
         }
-        const double value_before = number_of(*before.tree, "value");
-        const double value_after = number_of(*after.tree, "value");
+        const char* measured = before.list->value;
+        const double value_before = number_of(*before.tree, measured);
+        const double value_after = number_of(*after.tree, measured);
         if (settled(value_before, value_after)) {
             return;
         }
@@ -351,13 +360,13 @@ private:
         const bool both_round_off = std::abs(value_before) <= bound && std::abs(value_after) <= bound;
         const bool tiny = std::abs(value_before) < 1e-9 && std::abs(value_after) < 1e-9;
         const bool close =
-            std::abs(value_after - value_before) <= round_off_of_operators * std::abs(value_before);
+            std::abs(value_after - value_before) <= before.list->round_off * std::abs(value_before);
         // A kernel's smoothness is an estimate from differences, good to the tolerance of its check and no
         // better.
         const bool within_tolerance =
             std::abs(value_after - value_before) <= number_of(*before.tree, "tolerance");
         note(both_round_off || tiny || close || within_tolerance ? Change::round_off : Change::error_level,
-             before.subject, before.where, "value", text_of(value_before, "%.6g"),
+             before.subject, before.where, measured, text_of(value_before, "%.6g"),
              text_of(value_after, "%.6g"), value_after / value_before);
     }
 
@@ -501,7 +510,7 @@ ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty) {
         baseline[list.name] = ResultTree::array();
         std::vector<const char*> kept = list.identity;
         kept.insert(kept.end(), demand_names.begin(), demand_names.end());
-        kept.insert(kept.end(), {"value", "waiver", list.passes});
+        kept.insert(kept.end(), {list.value, "waiver", list.passes});
         for (const ResultTree& check : member(result, list.name)) {
             refuse_unless_holding(check, list);
             baseline[list.name].push_back(picked(check, kept));

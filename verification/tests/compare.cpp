@@ -134,6 +134,47 @@ TEST(Compare, RoundOffPassesAndAChangedConstantIsNamed) {
     }
 }
 
+TEST(Compare, StabilityAndExtremeScenesAreChecks) {
+    ResultTree before{{"provenance", {{"tree_clean", true}}}};
+    before["stability_limits"] = {{{"study", "stability/acoustic"},
+                                   {"scheme", "wcsph"},
+                                   {"limit", "acoustic"},
+                                   {"theory", 4.5},
+                                   {"measured", 4.51},
+                                   {"passes", true}}};
+    before["stability_maps"] = {
+        {{"study", "stability/tensile_map"}, {"scheme", "wcsph"}, {"disagreements", 0}, {"passes", true}}};
+    before["extreme_rows"] = {{{"name", "a spray"},
+                               {"scheme", "wcsph"},
+                               {"fate", "bounded"},
+                               {"bound", 1e-12},
+                               {"error", 2e-16},
+                               {"passes", true},
+                               {"waiver", ""}}};
+    const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(before)));
+    EXPECT_TRUE(compare(baseline, before).differences.empty());
+    const auto with = [&](const auto& edit) {
+        ResultTree now = before;
+        edit(now);
+        return compare(baseline, now);
+    };
+    EXPECT_FALSE(with([](ResultTree& now) { now["stability_limits"][0]["measured"] = 4.53; }).fails());
+    EXPECT_FALSE(with([](ResultTree& now) { now["extreme_rows"][0]["error"] = 9e-16; }).fails());
+    for (const auto& [list, name, value, change] :
+         {std::tuple{"stability_limits", "measured", ResultTree(4.0), Change::error_level},
+          {"stability_limits", "measured", ResultTree(nullptr), Change::error_level},
+          {"stability_limits", "theory", ResultTree(5.0), Change::demand},
+          {"stability_limits", "passes", ResultTree(false), Change::verdict},
+          {"stability_maps", "disagreements", ResultTree(3), Change::error_level},
+          {"extreme_rows", "bound", ResultTree(1.0), Change::demand},
+          {"extreme_rows", "fate", ResultTree("survives"), Change::demand},
+          {"extreme_rows", "passes", ResultTree(false), Change::verdict}}) {
+        ResultTree now = before;
+        now[list][0][name] = value;
+        EXPECT_EQ(count(compare(baseline, now), change), 1) << list << ' ' << name;
+    }
+}
+
 TEST(Compare, SchemesHaveTheirOwnRoundOff) {
     const auto scaled = [](double factor) {
         return after([&](ResultTree& tree) {
