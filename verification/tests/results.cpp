@@ -189,7 +189,7 @@ TEST_F(Results, KeepsTheOrderOfMembersAndOfManyItems) {
     for (int k = 0; k < 12000; ++k) {
         tree["items"].push_back({{"k", k}, {"x", ResultTree::object()}});
     }
-    tree["table"] = {{{"z", 1}, {"a", 2}, {"m", 3}}};
+    tree["table"] = ResultTree::array({{{"z", 1}, {"a", 2}, {"m", 3}}});
     EXPECT_EQ(round_trip(tree).dump(), tree.dump());
 }
 
