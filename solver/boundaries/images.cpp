@@ -245,6 +245,25 @@ void Images<Dim>::fill(Field& field, Parity parity, const Vector<Dim>& body_shar
 }
 
 template <int Dim>
+typename Images<Dim>::Reflected Images<Dim>::reflected_component(int component, const Vector<Dim>& common,
+                                                                 double dt) const {
+    Reflected result{std::vector<double>(size()), std::vector<double>(size())};
+    for (std::size_t k = 0; k < size(); ++k) {
+        const Reflection& at = reflection_[k];
+        const double n = at.normal[component];
+        const bool sticks = at.slip == Slip::no_slip;
+        const double sign = sticks ? -1 : 1 - 2 * n * n;
+        const double of_wall = sticks ? at.wall_velocity[component] : at.wall_velocity.dot(at.normal) * n;
+        const double share = (common - dt * at.wall_acceleration).dot(at.normal) * n;
+        // An image of an image is reflected from that.
+        const auto from = static_cast<std::size_t>(source_[k]);
+        result.sign[k] = from < first_ ? sign : sign * result.sign[from - first_];
+        result.offset[k] = 2 * (of_wall + share) + (from < first_ ? 0 : sign * result.offset[from - first_]);
+    }
+    return result;
+}
+
+template <int Dim>
 void Images<Dim>::take_means(double* values) const {
     for (const Mean& mean : means_) {
         double total = 0;

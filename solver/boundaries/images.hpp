@@ -46,6 +46,17 @@ public:
     /// The same for a velocity of which common - dt a, a the acceleration of the wall, is what everything
     /// has, images alike: only the rest is reflected.
     void fill(Field& field, Parity parity, const Vector<Dim>& common, double dt) const;
+    /// What a component of a velocity is at every image, from what it is at the particle of the image: sign u
+    /// + offset (m/s).
+    struct Reflected {
+        std::vector<double> sign;
+        std::vector<double> offset;
+    };
+    /// That of a velocity u* which the pressure has yet to act on. At a wall without slip it is that of the
+    /// wall, at one with free slip its component along the normal is, but for the share (common - dt a).n,
+    /// which the pressure takes off again. The components must not mix: the normal of a wall with free slip
+    /// lies along an axis, and no image is a mean.
+    Reflected reflected_component(int component, const Vector<Dim>& common, double dt) const;
     /// What a pressure with the gradient rho (f - a) next to a wall of acceleration a differs by at every
     /// image from that of its particle, Pa.
     std::vector<double> differences(const Vector<Dim>& f, double rho, const Field& position) const;

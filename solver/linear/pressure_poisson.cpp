@@ -132,7 +132,7 @@ void PressurePoisson<Dim>::CoarseSpace::compute(const PressurePoisson& problem) 
                     }
                     const int other = grid.cell_of(j);
                     touch(other);
-                    sums[other] -= w[k];
+                    sums[other] -= w[k] * problem.sign_of(row.index[k]);
                 }
             }
             std::sort(touched_cells.begin(), touched_cells.end());
@@ -240,6 +240,27 @@ void PressurePoisson<Dim>::reset(const NeighbourList<Dim>& neighbours, const Ima
     source_.resize(neighbours.size());
     fixed_.clear();
     has_conditions_ = false;
+    has_identity_ = false;
+    image_sign_.clear();
+    coarse_is_current_ = false;
+}
+
+template <int Dim>
+void PressurePoisson<Dim>::add_identity(double c) {
+    for_each_row(*neighbours_, [&](int i, const auto& row) {
+        for (int k = 0; k < row.padded; ++k) {
+            weights(i)[k] *= c;
+        }
+        diagonal_[i] = 1 + c * diagonal_[i];
+    });
+    has_identity_ = true;
+    coarse_is_current_ = false;
+}
+
+template <int Dim>
+void PressurePoisson<Dim>::set_image_signs(std::vector<double> sign) {
+    coarse_is_current_ = coarse_is_current_ && sign == image_sign_;
+    image_sign_ = std::move(sign);
 }
 
 template <int Dim>
@@ -261,6 +282,7 @@ void PressurePoisson<Dim>::fix_at_zero(int i) {
     std::fill(weights(i), weights(i) + row.padded, 0.0);
     diagonal_[i] = 1;
     source_[i] = 0;
+    coarse_is_current_ = false;
 }
 
 template <int Dim>
@@ -273,6 +295,7 @@ void PressurePoisson<Dim>::set_condition(int i, double own) {
     diagonal_[i] = total;
     source_[i] = 0;
     has_conditions_ = true;
+    coarse_is_current_ = false;
 }
 
 template <int Dim>
@@ -281,6 +304,9 @@ void PressurePoisson<Dim>::multiply(const double* x, double* y) const {
         with_images_.assign(x, x + size());
         with_images_.resize(size() + images_->size());
         images_->fill(with_images_.data(), size());
+        for (std::size_t k = 0; k < image_sign_.size(); ++k) {
+            with_images_[size() + k] *= image_sign_[k];
+        }
         x = with_images_.data();
     }
     for_each_row(*neighbours_, [&](int i, const auto& row) {
@@ -315,8 +341,9 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
         std::fill(pressure, pressure + size(), 0.0);
         return result;
     }
-    if (coarse_) {
+    if (coarse_ && !coarse_is_current_) {
         coarse_->compute(*this);
+        coarse_is_current_ = true;
     }
     const PairMatrix<Dim> matrix(*this);
     const auto run = [&](auto&& solver, int products_per_iteration) {
@@ -339,6 +366,8 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     }
     if (singular()) {
         remove_mean(p.data(), size());
+    } else if (keeps_mean()) {
+        p.array() += deterministic_sum(size(), [&](int i) { return source_[i] - p[i]; }) / size();
     }
     std::copy(p.begin(), p.end(), pressure);
     return result;

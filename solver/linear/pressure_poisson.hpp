@@ -24,6 +24,9 @@ struct LinearSolve {
 ///
 /// An image of j beyond a wall has the pressure of j, plus a given difference.
 ///
+/// add_identity() makes it the discrete Helmholtz problem p_i + c sum_j w_ij (p_i - p_j) = b_i, of which
+/// p may be a component of a velocity: an image then has plus or minus the value of j, plus a difference.
+///
 /// The matrix is never copied: products run over the list. Constants are in its null space (no free
 /// surface), so the mean of the right-hand side is projected out, and so is the mean of each product where
 /// the matrix is not symmetric and its range is another hyperplane; the solution is returned with zero mean.
@@ -62,8 +65,17 @@ public:
     /// round-off.
     void set_round_off(double root_mean_square) { round_off_ = root_mean_square; }
 
-    /// Takes given differences p_k - p_j of images k and their particles j (Pa, image by image) to the
-    /// sources, of which the equations have been written.
+    /// Equation i, which has been written as that of Poisson's problem, becomes p_i + c sum_j w_ij (p_i -
+    /// p_j) = b_i: the solution is unique. Where the weights are symmetric and nothing lies beyond a wall,
+    /// the columns of the matrix sum to 1, and the solution is returned with the mean of b to round-off.
+    void add_identity(double c);
+
+    /// An image k has sign_k (1 or -1) times the value of its particle, plus its difference; 1 until told
+    /// otherwise.
+    void set_image_signs(std::vector<double> sign);
+
+    /// Takes given differences p_k - p_j (with signs, p_k - sign_k p_j) of images k and their particles j
+    /// (Pa, image by image) to the sources, of which the equations have been written.
     void set_image_differences(const std::vector<double>& difference);
 
     /// p_i = 0 takes the place of equation i, which has been written. With one such particle the solution is
@@ -91,11 +103,16 @@ private:
     Options options_;
     bool symmetric() const { return options_.symmetric && images_->symmetric() && !has_conditions_; }
     /// Whether constants are in the null space.
-    bool singular() const { return fixed_.empty() && !has_conditions_; }
+    bool singular() const { return fixed_.empty() && !has_conditions_ && !has_identity_; }
+    /// Whether the mean of the solution is that of the source.
+    bool keeps_mean() const { return has_identity_ && symmetric() && images_->empty() && fixed_.empty(); }
     bool is_fixed(int i) const { return !fixed_.empty() && fixed_[i]; }
     /// The particle whose pressure a neighbour has.
     int unknown_of(int neighbour) const {
         return neighbour < size() ? neighbour : images_->particle(neighbour - size());
+    }
+    double sign_of(int neighbour) const {
+        return neighbour < size() || image_sign_.empty() ? 1 : image_sign_[neighbour - size()];
     }
 
     const NeighbourList<Dim>* neighbours_ = nullptr;
@@ -104,6 +121,9 @@ private:
     std::vector<double> weights_;
     std::vector<char> fixed_; // empty where none is
     bool has_conditions_ = false;
+    bool has_identity_ = false;
+    std::vector<double> image_sign_; // empty where all are 1
+    bool coarse_is_current_ = false;
     Eigen::VectorXd diagonal_;
     Eigen::VectorXd source_;
     std::unique_ptr<CoarseSpace> coarse_;

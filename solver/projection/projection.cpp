@@ -55,14 +55,67 @@ Viscosity viscosity_of(const Settings& settings) {
 }
 
 template <int Dim>
-PressurePoisson<Dim> poisson_of(const Settings& settings) {
+typename PressurePoisson<Dim>::Options solver_options(const Settings& settings) {
     using Poisson = PressurePoisson<Dim>;
     typename Poisson::Options options;
     options.tolerance = settings.number("pressure_tolerance");
     options.symmetric = settings.word("laplacian") == "morris";
     options.preconditioner = settings.word("preconditioner") == "jacobi" ? Poisson::Preconditioner::jacobi
                                                                          : Poisson::Preconditioner::two_level;
-    return Poisson(options);
+    return options;
+}
+
+/// Of the fluid, or of the layer next to a free surface.
+template <int Dim>
+bool is_viscous(const Simulation<Dim>& s) {
+    return s.kinematic_viscosity > 0 || (s.free_surface && s.free_surface->layer);
+}
+
+/// Throws UserError for what an implicit viscous step does not cover.
+template <int Dim>
+void check_implicit_viscosity(const Simulation<Dim>& s, Viscosity viscosity) {
+    const auto refuse = [](const std::string& sentence) {
+        throw UserError("viscous_step=implicit " + sentence + ", or viscous_step=explicit");
+    };
+    if (viscosity == Viscosity::monaghan_cleary) {
+        refuse("solves for each component of the velocity by itself, and viscosity=monaghan_cleary couples "
+               "them; give viscosity=laplacian or morris");
+    }
+    if (s.free_surface && s.free_surface->layer) {
+        refuse("takes one viscosity, and surface_peclet=" + s.settings.text("surface_peclet") +
+               " raises it near the surface; give surface_peclet=0");
+    }
+    if (s.free_surface && viscosity == Viscosity::schwaiger) {
+        refuse("takes a Laplacian whose sum over fewer neighbours is a free surface without stress, which "
+               "LS is not; give viscosity=morris");
+    }
+    if (!s.walls.empty() && (s.wall_method != WallMethod::mirror || !s.wall_particles.empty())) {
+        refuse("takes walls of images alone; give wall_method=mirror");
+    }
+    for (const Wall<Dim>& wall : s.walls) {
+        for (std::size_t i = 0; i < s.particles.size() && wall.slip == Slip::free_slip; ++i) {
+            Vector<Dim> x;
+            for (int d = 0; d < Dim; ++d) {
+                x[d] = s.particles.position[d][i];
+            }
+            if (wall.normal(x).cwiseAbs().maxCoeff() < 1 - 1e-12) {
+                refuse("solves for each component of the velocity by itself, and free slip at " + wall.name +
+                       ", which does not lie along an axis, couples them; give a wall that does");
+            }
+        }
+    }
+}
+
+template <int Dim>
+std::optional<PressurePoisson<Dim>> implicit_viscosity_of(const Simulation<Dim>& s, Viscosity viscosity) {
+    if (s.settings.word("viscous_step") == "explicit" || !is_viscous(s)) {
+        return std::nullopt;
+    }
+    check_implicit_viscosity(s, viscosity);
+    auto options = solver_options<Dim>(s.settings);
+    options.tolerance = s.settings.number("viscous_tolerance");
+    options.symmetric = viscosity == Viscosity::morris;
+    return PressurePoisson<Dim>(options);
 }
 
 /// Runs body(volume) with the volumes m/rho_j of the summation density or m/rho_0.
@@ -172,12 +225,6 @@ int weight_sweeps(const Projection<Dim>& p) {
     return p.schwaiger ? 2 : 1;
 }
 
-/// Of the fluid, or of the layer next to a free surface.
-template <int Dim>
-bool is_viscous(const Simulation<Dim>& s) {
-    return s.kinematic_viscosity > 0 || (s.free_surface && s.free_surface->layer);
-}
-
 } // namespace
 
 std::vector<Key> keys(const Defaults& defaults) {
@@ -192,7 +239,17 @@ std::vector<Key> keys(const Defaults& defaults) {
                    "G-"),
          Key::number("eta_over_h", 0, 0, 1, "1", "eta/h in the Morris Laplacian and in Monaghan-Cleary's"),
          Key::number("advective_limit", defaults.advective_limit, 1e-4, 2, "1", "dt <= this h/u_max"),
-         Key::number("viscous_limit", defaults.viscous_limit, 1e-4, 2, "1", "dt <= this h^2/nu"),
+         Key::number("viscous_limit", defaults.viscous_limit, 1e-4, 2, "1",
+                     "dt <= this h^2/nu with an explicit viscous step, which is unstable far above it"),
+         Key::word("viscous_step", "explicit", {"explicit", "implicit"},
+                   "viscosity of the old velocity (forward Euler), or of the new one (backward Euler): a "
+                   "linear solve for each component, stable at any step. Implicit takes LM, or LS without a "
+                   "free surface, and walls of images (mirror)"),
+         Key::number("implicit_viscous_limit", 1e6, 1e-4, 1e6, "1",
+                     "dt <= this h^2/nu with an implicit viscous step, for accuracy alone: a mode that "
+                     "decays at the rate lambda is off by lambda dt/2 of its decay"),
+         Key::number("viscous_tolerance", 1e-8, 1e-14, 0.1, "1",
+                     "relative residual of the implicit viscous step, in every step"),
          Key::word(
              "surface_pressure", "at_particle", {"at_particle", "true_position"},
              "at a free surface p = 0: at the particles found there (as published), or where the surface "
@@ -202,7 +259,8 @@ std::vector<Key> keys(const Defaults& defaults) {
              "Pe_max of the damping viscosity u_max dx/Pe_max within 2 dx of a free surface; 0 for none. "
              "Xu 2009 §6.3: 7 to 150, 30 best"),
          Key::number("pressure_tolerance", 1e-5, 1e-14, 0.1, "1", "relative residual of the pressure solve"),
-         Key::word("preconditioner", "two_level", {"two_level", "jacobi"}, "of the pressure solve")});
+         Key::word("preconditioner", "two_level", {"two_level", "jacobi"},
+                   "of the pressure solve, and of an implicit viscous step")});
 }
 
 template <int Dim>
@@ -230,7 +288,7 @@ SharedProjection<Dim> make_projection(Simulation<Dim>& s, Density density) {
                 : nullptr,
         summed ? &particles.field("particle_density", 1, Lifetime::scratch, "density") : nullptr, gradient,
         viscosity, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density},
-        poisson_of<Dim>(settings)});
+        PressurePoisson<Dim>(solver_options<Dim>(settings)), implicit_viscosity_of(s, viscosity)});
 }
 
 template <int Dim>
@@ -251,8 +309,9 @@ void choose_time_step(Simulation<Dim>& s) {
         // a decaying flow the last steps grow to 0.2 h/u_max(t): at Re = 100, 20^2, that triples the velocity
         // error.)
         const double u_max = std::max(s.reference_speed, maximum_speed(s));
+        const bool implicit = settings.has("viscous_step") && settings.word("viscous_step") == "implicit";
         limit = std::min(settings.number("advective_limit") * h / u_max,
-                         settings.number("viscous_limit") * h * h /
+                         settings.number(implicit ? "implicit_viscous_limit" : "viscous_limit") * h * h /
                              std::max(s.kinematic_viscosity, damping_viscosity(s)));
         if (settings.has("force_limit") && s.maximum_acceleration > 0) {
             limit = std::min(limit, settings.number("force_limit") * std::sqrt(h / s.maximum_acceleration));
@@ -304,6 +363,52 @@ void form_damped_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
     s.count_sweeps(p.renormalisation != nullptr ? 2 : 1);
 }
 
+/// Books a solve; `of` names it where it did not converge.
+template <int Dim>
+void book(Simulation<Dim>& s, const LinearSolve& solve, const std::string& of) {
+    s.work.solver_iterations += solve.iterations;
+    s.work.matrix_entries += solve.matrix_entries;
+    if (!solve.converged) {
+        throw Diverged(of + " solver stopped at residual " + shortest(solve.residual) + " after " +
+                       std::to_string(solve.iterations) + " iterations at t = " + shortest(s.time) +
+                       ", step " + std::to_string(s.step));
+    }
+}
+
+template <int Dim>
+void solve_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt, double forced) {
+    PressurePoisson<Dim>& problem = *p.implicit_viscosity;
+    problem.reset(s.neighbours, s.images);
+    const bool schwaiger = p.viscosity == Viscosity::schwaiger;
+    const bool needs_L = p.renormalisation != nullptr || schwaiger;
+    for_each_row(s.neighbours, [&](int i, const Row<Dim>& row) {
+        const Matrix<Dim> L = needs_L ? renormalisation<Dim>(row, p.volume) : Matrix<Dim>::Identity();
+        if (p.renormalisation != nullptr) {
+            write_matrix<Dim>(*p.renormalisation, i, L);
+        }
+        problem.diagonal(i) =
+            schwaiger ? laplacian_schwaiger_weights<Dim>(row, p.volume, L, problem.weights(i))
+                      : laplacian_morris_weights<Dim>(row, p.volume, p.eta_squared, problem.weights(i));
+    });
+    problem.add_identity(dt * s.kinematic_viscosity);
+    s.count_sweeps((needs_L ? 1 : 0) + (schwaiger ? 2 : 1));
+    const double pressed = s.has_wall_pressure_gradient() ? forced : 0;
+    const Vector<Dim> share = pressed * Eigen::Map<const Vector<Dim>>(s.body_force.data());
+    for (int d = 0; d < Dim; ++d) {
+        const double* u = s.particles.velocity[d];
+        for (int i = 0; i < problem.size(); ++i) {
+            problem.source(i) = u[i] + dt * s.body_force[d];
+        }
+        if (!s.images.empty()) {
+            auto image = s.images.reflected_component(d, share, pressed);
+            problem.set_image_differences(image.offset);
+            problem.set_image_signs(std::move(image.sign));
+        }
+        std::copy_n(u, problem.size(), p.velocity_next[d]);
+        book(s, problem.solve(p.velocity_next[d]), "viscous");
+    }
+}
+
 template <int Dim>
 void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
     s.fill_walls(s.particles.velocity, Parity::velocity);
@@ -337,8 +442,12 @@ void form_viscous_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
 } // namespace
 
 template <int Dim>
-void form_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
+void form_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt, double forced) {
     s.set_body_force(s.time + s.time_step); // the pressure that takes it off again is that of the end
+    if (p.implicit_viscosity) {
+        solve_viscous_velocity(s, p, dt, forced);
+        return;
+    }
     if (is_viscous(s)) {
         form_viscous_velocity(s, p, dt);
         return;
@@ -375,7 +484,7 @@ void add_forces_stages(Simulation<Dim>& s, const SharedProjection<Dim>& projecti
                     [projection](Simulation<Dim>& sim) { form_renormalisation(sim, *projection); });
     }
     s.add_stage(forces_name(s), [projection](Simulation<Dim>& sim) {
-        form_forced_velocity(sim, *projection, sim.time_step);
+        form_forced_velocity(sim, *projection, sim.time_step, sim.time_step);
     });
 }
 
@@ -440,9 +549,13 @@ Conserves conserves(const Settings& settings) {
     return {.momentum = antisymmetric, .angular_momentum = antisymmetric && central, .energy = false};
 }
 
-TimeOrder euler_order(const Settings& /*settings*/) {
+TimeOrder euler_order(const Settings& settings) {
+    const bool implicit = settings.word("viscous_step") == "implicit";
     return {
-        1, "forward Euler: viscosity of the old velocity, pressure constant over the step (Xu 2009 §2.2)",
+        1,
+        implicit ? "backward Euler: viscosity of the new velocity, pressure constant over the step"
+                 : "forward Euler: viscosity of the old velocity, pressure constant over the step (Xu 2009 "
+                   "§2.2)",
         "the projection is approximate, its Laplacian is not div grad: a step takes off the share "
         "(div grad)/Laplacian of a mode's divergence, which is near 0 for the shortest waves; theirs adds "
         "up over the steps, and with it a pressure that is the larger the finer the step"};
@@ -504,14 +617,7 @@ void solve_poisson(Simulation<Dim>& s, PressurePoisson<Dim>& poisson, Field& pre
     if (!s.images.empty()) {
         poisson.set_image_differences(s.wall_pressure_differences());
     }
-    const LinearSolve solve = poisson.solve(pressure[0]);
-    s.work.solver_iterations += solve.iterations;
-    s.work.matrix_entries += solve.matrix_entries;
-    if (!solve.converged) {
-        throw Diverged("pressure solver stopped at residual " + shortest(solve.residual) + " after " +
-                       std::to_string(solve.iterations) + " iterations at t = " + shortest(s.time) +
-                       ", step " + std::to_string(s.step));
-    }
+    book(s, poisson.solve(pressure[0]), "pressure");
 }
 
 template <int Dim>
@@ -537,7 +643,7 @@ void subtract_pressure_gradient(Simulation<Dim>& s, const Projection<Dim>& p, Fi
     template SharedProjection<Dim> make_projection(Simulation<Dim>&, Density);                               \
     template void choose_time_step(Simulation<Dim>&);                                                        \
     template void drift(Simulation<Dim>&);                                                                   \
-    template void form_forced_velocity(Simulation<Dim>&, Projection<Dim>&, double);                          \
+    template void form_forced_velocity(Simulation<Dim>&, Projection<Dim>&, double, double);                  \
     template std::string forces_name(const Simulation<Dim>&);                                                \
     template void form_renormalisation(Simulation<Dim>&, Projection<Dim>&);                                  \
     template void add_forces_stages(Simulation<Dim>&, const SharedProjection<Dim>&);                         \

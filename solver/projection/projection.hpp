@@ -5,6 +5,7 @@
 #include "sphvv/solver/schemes.hpp"
 
 #include <memory>
+#include <optional>
 
 /// What pressure-projection schemes are made of. A scheme's stages are these acts in the order that its
 /// publication gives; two schemes that share a whole list of stages share a file of this folder.
@@ -42,6 +43,7 @@ struct Projection {
     double eta_squared;
     UniformVolume volume; ///< m/rho_0
     PressurePoisson<Dim> poisson;
+    std::optional<PressurePoisson<Dim>> implicit_viscosity; ///< (1 - dt nu Laplacian) u* = u + dt f
 };
 
 template <int Dim>
@@ -62,7 +64,8 @@ SharedProjection<Dim> make_projection(Simulation<Dim>& simulation, Density densi
 template <int Dim>
 double damping_viscosity(const Simulation<Dim>& simulation);
 
-/// dt = min(advective_limit h/u_max, viscous_limit h^2/nu) and, for a scheme that has the key, force_limit
+/// dt = min(advective_limit h/u_max, viscous_limit h^2/nu), of an implicit viscous step
+/// implicit_viscous_limit h^2/nu, and, for a scheme that has the key, force_limit
 /// sqrt(h/|a|) with the largest acceleration of the last step. Source: Xu 2009 §3.4; Lee 2008 §1.3.
 template <int Dim>
 void choose_time_step(Simulation<Dim>& simulation);
@@ -74,8 +77,15 @@ void drift(Simulation<Dim>& simulation);
 /// u* = u + dt (nu Laplacian u + f), f the body force, on the current neighbours, at the density rho_0;
 /// writes L_i where it is kept. An inviscid fluid has no sweep over neighbours here: u* = u + dt f, and L_i
 /// is left to form_renormalisation().
+///
+/// An implicit viscous step is backward Euler, u* - dt nu Laplacian u* = u + dt f, one linear problem for
+/// each component, started from u; it throws Diverged where the solver stops short of its tolerance. At a
+/// wall without slip u* is the velocity of the wall, but for what the pressure of the wall takes off again,
+/// n.(f - a) `forced` along the normal: f has acted for the time `forced` on u*. Where f or a pressure
+/// gradient along such a wall balance, the slip that they leave is O(dt), as of every projection that does
+/// not carry the old pressure (Guermond, Minev & Shen 2006 §3.1).
 template <int Dim>
-void form_forced_velocity(Simulation<Dim>& simulation, Projection<Dim>& projection, double dt);
+void form_forced_velocity(Simulation<Dim>& simulation, Projection<Dim>& projection, double dt, double forced);
 
 /// What the stage of form_forced_velocity() is called: "viscosity", or "body_force" of an inviscid fluid.
 template <int Dim>

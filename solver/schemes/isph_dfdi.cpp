@@ -46,8 +46,13 @@ void make_density_invariant(Simulation<Dim>& s, Projection<Dim>& p, Field& densi
 }
 
 template <int Dim>
-void form_half_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p) {
-    projection::form_forced_velocity(s, p, s.time_step / 2);
+void form_first_half_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p) {
+    projection::form_forced_velocity(s, p, s.time_step / 2, s.time_step / 2);
+}
+
+template <int Dim>
+void form_second_half_forced_velocity(Simulation<Dim>& s, Projection<Dim>& p) {
+    projection::form_forced_velocity(s, p, s.time_step / 2, s.time_step);
 }
 
 /// Takes over u^{*,1/2} as the velocity: u^n is not needed any more.
@@ -76,7 +81,7 @@ void assemble(Simulation<Dim>& s) {
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, 0); });
     add_surface_stage(s);
     s.add_stage(projection::forces_name(s), [shared](Simulation<Dim>& sim) {
-        form_half_forced_velocity(sim, *shared);
+        form_first_half_forced_velocity(sim, *shared);
         take_over_velocity(sim, *shared);
     });
     s.add_stage("drift", projection::drift<Dim>);
@@ -84,7 +89,7 @@ void assemble(Simulation<Dim>& s) {
         make_density_invariant(sim, *shared, density_pressure);
     });
     s.add_stage("second_" + projection::forces_name(s),
-                [shared](Simulation<Dim>& sim) { form_half_forced_velocity(sim, *shared); });
+                [shared](Simulation<Dim>& sim) { form_second_half_forced_velocity(sim, *shared); });
     s.add_stage("pressure_poisson", [shared](Simulation<Dim>& sim) { make_divergence_free(sim, *shared); });
     s.add_stage("projection", [shared](Simulation<Dim>& sim) {
         projection::subtract_pressure_gradient(sim, *shared, shared->pressure, sim.time_step,

@@ -43,7 +43,15 @@ const std::array projections{
     Choice{"isph_lee", {{"laplacian", "schwaiger"}}},
     Choice{"isph_asai", {}},
     Choice{"isph_asai", {{"relaxation", "0.8"}, {"gradient", "normalised"}}},
-    Choice{"isph_asai", {{"laplacian", "schwaiger"}, {"viscosity", "monaghan_cleary"}}}};
+    Choice{"isph_asai", {{"laplacian", "schwaiger"}, {"viscosity", "monaghan_cleary"}}},
+    Choice{"isph_df", {{"viscous_step", "implicit"}}},
+    Choice{"isph_df",
+           {{"viscous_step", "implicit"}, {"laplacian", "schwaiger"}, {"preconditioner", "jacobi"}}},
+    Choice{"isph_dfs", {{"viscous_step", "implicit"}, {"gradient", "plain"}}},
+    Choice{"isph_di", {{"viscous_step", "implicit"}, {"eta_over_h", "0.1"}}},
+    Choice{"isph_dfdi", {{"viscous_step", "implicit"}, {"density_iterations", "2"}}},
+    Choice{"isph_lee", {{"viscous_step", "implicit"}, {"laplacian", "schwaiger"}}},
+    Choice{"isph_asai", {{"viscous_step", "implicit"}}}};
 
 std::string described(const Choice& choice) {
     std::string text = choice.scheme;
@@ -61,6 +69,7 @@ TEST(CitedAlgorithm, IsCarriedOutByTheProjectionSchemes) {
             const Scheme& scheme = schemes::find(choice.scheme);
             Assignments given = choice.given;
             given["pressure_tolerance"] = "1e-13";
+            given["viscous_tolerance"] = "1e-13";
             given["kernel"] = "quintic_spline";
             given["h_over_dx"] = "1.2";
             Simulation<Dim> scene = general_scene<Dim>(scheme, given);

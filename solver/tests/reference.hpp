@@ -51,6 +51,7 @@ struct Reference {
         std::string gradient; ///< normalised, plain or symmetric
         bool schwaiger;
         bool monaghan_cleary;
+        bool implicit; ///< viscosity of the velocity to come
         double eta;
         double C;          ///< of shifting, 0 for none
         double longest;    ///< shift
@@ -152,10 +153,25 @@ struct Reference {
         return result;
     }
 
-    /// v + dt nu Laplacian v, at the density rho_0.
+    /// v + dt nu Laplacian v, at the density rho_0, or v' with v' - dt nu Laplacian v' = v.
     Vectors with_viscosity(const Vectors& v, double dt, const Pairs& pairs, const Choices& choices) const {
         Vectors result = v;
         const Eigen::MatrixXd lap = rho0 * diffusion(pairs, constant_density(), choices);
+        if (choices.implicit) {
+            const auto decomposed =
+                (Eigen::MatrixXd::Identity(lap.rows(), lap.cols()) - dt * nu * lap).partialPivLu();
+            for (int d = 0; d < Dim; ++d) {
+                Eigen::VectorXd component(lap.rows());
+                for (std::size_t i = 0; i < v.size(); ++i) {
+                    component[static_cast<int>(i)] = v[i][d];
+                }
+                component = decomposed.solve(component).eval();
+                for (std::size_t i = 0; i < v.size(); ++i) {
+                    result[i][d] = component[static_cast<int>(i)];
+                }
+            }
+            return result;
+        }
         for (std::size_t i = 0; i < v.size(); ++i) {
             for (std::size_t j = 0; j < v.size() && !choices.monaghan_cleary; ++j) {
                 result[i] += dt * nu * lap(i, j) * v[j];
@@ -585,6 +601,7 @@ typename Reference<Dim>::Choices choices(const Simulation<Dim>& scene) {
     return {.gradient = settings.word("gradient"),
             .schwaiger = settings.word("laplacian") == "schwaiger",
             .monaghan_cleary = settings.word("viscosity") == "monaghan_cleary",
+            .implicit = settings.word("viscous_step") == "implicit",
             .eta = settings.number("eta_over_h") * scene.smoothing_length,
             .C = number("shift_coefficient"),
             .longest = number("shift_limit") * scene.particle_spacing,
