@@ -540,6 +540,50 @@ MaybeFinding energy_of(Runs runs, const std::vector<std::string>& conserve,
     return Claim::Finding{text, 3 * largest_kept < smallest_lost};
 }
 
+// An explicit viscous step, and implicit ones of multiples of h^2/nu; the explicit limit is 0.2.
+const std::string explicit_step = "isph_dfs";
+
+std::string implicit_step(const std::string& limit) {
+    return "isph_dfs:implicit_viscous_limit=" + limit + ":viscous_step=implicit";
+}
+
+const std::array implicit_steps{implicit_step("0.2"), implicit_step("1"), implicit_step("5")};
+
+/// Least work of a run of that scheme with at most that error of the velocity.
+double least_work(Runs runs, std::string_view scheme, double error) {
+    double least = any;
+    for (const RunRecord& run : runs) {
+        if (run.scheme == scheme && run.survived && l2_error(run, "velocity") <= error) {
+            least = std::min(least, work_of(run));
+        }
+    }
+    return least;
+}
+
+/// Both held at the smallest error of each implicit step. Forward and backward Euler are off by the same
+/// (lambda T)(lambda dt/2), one either way: an error takes the same dt, and backward Euler a solve more. An
+/// error of space that has the sign of the one moves that of the other.
+MaybeFinding explicit_follows_a_decay_for_less(Runs runs) {
+    std::string text;
+    bool agrees = true;
+    for (const std::string& label : implicit_steps) {
+        double error = any;
+        for (const RunRecord& run : runs) {
+            error = run.scheme == label && run.survived ? std::min(error, l2_error(run, "velocity")) : error;
+        }
+        if (error == any || find_run(runs, explicit_step, runs.front().n) == nullptr) {
+            return std::nullopt;
+        }
+        const double ratio = least_work(runs, explicit_step, error) / least_work(runs, label, error);
+        agrees = agrees && ratio < 1;
+        text += (text.empty() ? "work of the explicit over the implicit step: " : ", ") +
+                (ratio < 1e100 ? number(ratio, "%.2g") : "not reached") + " at an L2 of " + percent(error) +
+                " (" + label.substr(label.find('=') + 1, label.find(':', 9) - label.find('=') - 1) +
+                " h^2/nu)";
+    }
+    return Claim::Finding{text, agrees};
+}
+
 const std::string sigma_2 = "wcsph";
 const std::string sigma_1 = "wcsph:continuity=sigma_1:pressure_force=sigma_1";
 const std::string coherent = "wcsph:continuity=renormalised:pressure_force=renormalised_coherent";
@@ -617,6 +661,11 @@ std::vector<Claim> claims() {
               [](Runs runs) { return smooth_pressure(runs, "isph_dfs"); }),
         claim("LEE, order", "WCSPH and ISPH are of first order", "about 1 (cavity)", "Lee 2008 §1.4", re_100,
               first_order_as_in_the_cavity),
+        claim("VISCOUS, decay",
+              "of a decay that must be followed, the explicit step reaches an error for less work: dt = "
+              "error/lambda for either, at one solve more",
+              "derived: first order, (lambda T)(lambda dt/2)", "this project", {{"re", 0, 100}},
+              explicit_follows_a_decay_for_less),
         claim("LEE, momentum", "the antisymmetric pressure gradient conserves momentum", "stated",
               "Lee 2008 §1.3", {}, momentum_of_symmetric_gradients),
         claim("ASAI, volume", "relaxed density invariance keeps the density where alpha = 0 loses it",
@@ -647,6 +696,8 @@ std::vector<Study> studies() {
         with({"isph_asai:relaxation=0", di_any_energy, wcsph_c0_100, "isph_df:advective_limit=0.1",
               "isph_df:advective_limit=0.05"});
     const std::vector<std::string> pairs{sigma_2, sigma_1, coherent, issa_pair, non_coherent, taylor};
+    std::vector<std::string> with_implicit{explicit_step};
+    with_implicit.insert(with_implicit.end(), implicit_steps.begin(), implicit_steps.end());
     const std::vector<std::string> marching{"isph_mls",
                                             "isph_mls:integrator=euler",
                                             "isph_mls:operators=renormalised",
@@ -703,6 +754,13 @@ std::vector<Study> studies() {
          .cost = "5 s",
          // The longest step of the study above is twice its acoustic limit.
          .time_steps = {0.004, 0.002, 0.001, 0.0005, 0.00025}},
+        {.name = "taylor_green/implicit",
+         .tier = Tier::quick,
+         .schemes = with_implicit,
+         // 8 pi^2 T/Re = 1: the vortices go down to 1/e, and move by 1e-5 of their size.
+         .settings = {{"re", "1e-3"}, {"end_time", "1.2665e-5"}},
+         .ladder = {20, 28, 40, 56},
+         .cost = "3 s"},
         {.name = "taylor_green/energy",
          .tier = Tier::quick,
          .schemes = pairs,
@@ -714,6 +772,24 @@ std::vector<Study> studies() {
                       {"time_step", "2e-4"}},
          .ladder = {20},
          .cost = "15 s"},
+        {.name = "taylor_green/implicit_fine",
+         .tier = Tier::nightly,
+         .schemes = with_implicit,
+         .settings = {{"re", "1e-3"}, {"end_time", "1.2665e-5"}},
+         .ladder = {20, 28, 40, 56, 80, 112},
+         .cost = "1 min"},
+        {.name = "taylor_green/implicit_re1",
+         .tier = Tier::nightly,
+         .schemes = with_implicit,
+         .settings = {{"re", "1"}, {"end_time", "0.012665"}},
+         .ladder = {20, 28, 40, 56, 80, 112},
+         .cost = "1 min"},
+        {.name = "taylor_green/implicit_re100",
+         .tier = Tier::nightly,
+         .schemes = with_implicit,
+         .settings = {{"re", "100"}},
+         .ladder = {20, 28, 40, 56, 80},
+         .cost = "1 min"},
         {.name = "taylor_green/order_re100",
          .tier = Tier::nightly,
          .schemes = {"isph_dfs", "isph_mls"},

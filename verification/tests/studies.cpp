@@ -289,6 +289,7 @@ std::vector<RunRecord> random_world(const Case& flow, std::mt19937_64& engine) {
         const double speed = uniform(-0.1, 0.1);
         const double cost = std::pow(10, uniform(-4, 0));
         const double disorder = uniform(0, 0.2);
+        const double growth = uniform(0.5, 2.5);
         for (RunRecord run : synthetic_runs(label, {20, 28, 30, 32, 40, 56, 80, 112, 160, 200, 240},
                                             [](double h) { return h; })) {
             const double share = std::pow(20. / run.n, 1);
@@ -321,7 +322,7 @@ std::vector<RunRecord> random_world(const Case& flow, std::mt19937_64& engine) {
                 run.errors.clear();
             }
             run.seconds = cost * run.n;
-            run.work.pair_evaluations = static_cast<std::int64_t>(1e6 * cost * run.n);
+            run.work.pair_evaluations = static_cast<std::int64_t>(1e6 * cost * std::pow(run.n, growth));
             run.budget.momentum_drift = std::pow(10, uniform(-18, -6));
             run.budget.energy_drift = std::pow(10, uniform(-9, 0));
             run.settings = {{"kernel", "quintic_spline"}};
