@@ -3,6 +3,7 @@
 #include "sphvv/solver/operators.hpp"
 #include "sphvv/solver/schemes.hpp"
 #include "sphvv/verification/cases.hpp"
+#include "sphvv/verification/extreme.hpp"
 #include "sphvv/verification/stability.hpp"
 
 #include "commands.hpp"
@@ -75,13 +76,15 @@ Entries studies() {
                                {"cost", study.cost}});
         }
     }
-    entries.push_back(
-        {{"name", "stability/extreme"},
-         {"summary", "quick tier, 5 s: scenes at and past the edge of what the schemes are made for"},
-         {"source", "each row's own"},
-         {"command", "stability"},
-         {"tier", "quick"},
-         {"cost", "5 s"}});
+    for (const verification::ExtremeStudy& study : verification::extreme_studies()) {
+        entries.push_back({{"name", study.name},
+                           {"summary", std::string(to_string(study.tier)) + " tier, " + study.cost +
+                                           ": scenes at and past the edge of what the schemes are made for"},
+                           {"source", "each row's own"},
+                           {"command", "stability"},
+                           {"tier", to_string(study.tier)},
+                           {"cost", study.cost}});
+    }
     for (const verification::StabilityStudy& study : verification::stability_studies()) {
         entries.push_back(
             {{"name", study.name},

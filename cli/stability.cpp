@@ -15,9 +15,8 @@
 namespace sphvv::cli {
 namespace {
 
+using verification::ExtremeStudy;
 using verification::StabilityStudy;
-
-const std::string extreme = "stability/extreme"; ///< quick tier
 
 struct Options {
     Common common;
@@ -29,42 +28,73 @@ struct Options {
 };
 
 [[noreturn]] void refuse_study(const std::string& name) {
-    std::string names = extreme;
+    std::string names;
     for (const StabilityStudy& study : verification::stability_studies()) {
-        names += ", ";
-        names += study.name;
+        names += study.name + ", ";
+    }
+    for (const ExtremeStudy& study : verification::extreme_studies()) {
+        names += (&study == &verification::extreme_studies().front() ? "" : ", ") + study.name;
     }
     throw UserError("there is no stability study '" + name + "'; accepted: " + names);
 }
 
-std::vector<const StabilityStudy*> studies_of(const Options& options) {
-    std::vector<const StabilityStudy*> wanted;
-    const auto all = verification::stability_studies();
-    for (const StabilityStudy& study : all) {
+struct Wanted {
+    std::vector<const StabilityStudy*> studies;
+    std::vector<const ExtremeStudy*> extreme;
+};
+
+Wanted studies_of(const Options& options) {
+    Wanted wanted;
+    const auto studies = verification::stability_studies();
+    const auto extreme = verification::extreme_studies();
+    for (const StabilityStudy& study : studies) {
         if (options.names.empty() && to_string(study.tier) == options.tier) {
-            wanted.push_back(&study);
+            wanted.studies.push_back(&study);
+        }
+    }
+    for (const ExtremeStudy& study : extreme) {
+        if (options.names.empty() && options.schemes.empty() && to_string(study.tier) == options.tier) {
+            wanted.extreme.push_back(&study);
         }
     }
     for (const std::string& name : options.names) {
-        if (name == extreme) {
-            continue;
-        }
-        const auto found = std::ranges::find(all, name, &StabilityStudy::name);
-        if (found == all.end()) {
+        const auto of_extreme = std::ranges::find(extreme, name, &ExtremeStudy::name);
+        const auto found = std::ranges::find(studies, name, &StabilityStudy::name);
+        if (of_extreme != extreme.end()) {
+            wanted.extreme.push_back(&*of_extreme);
+        } else if (found != studies.end()) {
+            wanted.studies.push_back(&*found);
+        } else {
             refuse_study(name);
         }
-        wanted.push_back(&*found);
     }
-    if (wanted.empty() && std::ranges::find(options.names, extreme) == options.names.end()) {
+    if (wanted.studies.empty() && wanted.extreme.empty()) {
         throw UserError("there is no stability study in the " + options.tier +
                         " tier; accepted: quick, nightly");
     }
     return wanted;
 }
 
+/// Runs the rows of its tier; what has run is in `results` even if a signal ends it.
+void run_rows(const ExtremeStudy& study, ProgressLine& line,
+              std::vector<verification::ExtremeResult>& results) {
+    const auto rows = verification::extreme_rows();
+    const auto all = std::ranges::count(rows, study.tier, &verification::ExtremeRow::tier);
+    std::ptrdiff_t done = 0;
+    for (const verification::ExtremeRow& row : rows) {
+        if (row.tier == study.tier) {
+            line.update(study.name + "  " + row.name + "  " + row.scheme,
+                        static_cast<double>(done++) / static_cast<double>(all));
+            results.push_back(run_extreme(row));
+            stop_if_signalled();
+        }
+    }
+    line.done(study.name);
+}
+
 int stability(const Options& options, const std::string& command_line) {
     use_threads(options.threads);
-    const auto wanted = studies_of(options);
+    const Wanted wanted = studies_of(options);
     for (const std::string& scheme : options.schemes) {
         verification::lattice_state({.scheme = scheme}); // refused before anything runs
     }
@@ -79,7 +109,7 @@ int stability(const Options& options, const std::string& command_line) {
     {
         ProgressLine line(options.common.quiet);
         try {
-            for (const StabilityStudy* study : wanted) {
+            for (const StabilityStudy* study : wanted.studies) {
                 auto found =
                     run_stability(*study, options.schemes, [&](const std::string& what, double fraction) {
                         line.update(what, fraction);
@@ -92,19 +122,11 @@ int stability(const Options& options, const std::string& command_line) {
                 std::ranges::move(found.limits, std::back_inserter(results.limits));
                 std::ranges::move(found.maps, std::back_inserter(results.maps));
             }
-            const bool quick = options.names.empty() && options.tier == "quick" && options.schemes.empty();
-            if (quick || std::ranges::find(options.names, extreme) != options.names.end()) {
-                const auto rows = verification::extreme_rows();
-                for (const auto& row : rows) {
-                    line.update(extreme + "  " + row.name + "  " + row.scheme,
-                                static_cast<double>(scenes.size()) / static_cast<double>(rows.size()));
-                    scenes.push_back(run_extreme(row));
-                    stop_if_signalled();
-                }
-                line.done(extreme);
-                if (options.common.json != "-") {
-                    std::cout << verification::markdown(scenes) << std::flush;
-                }
+            for (const ExtremeStudy* study : wanted.extreme) {
+                run_rows(*study, line, scenes);
+            }
+            if (!scenes.empty() && options.common.json != "-") {
+                std::cout << verification::markdown(scenes) << std::flush;
             }
         } catch (...) {
             ended = std::current_exception();

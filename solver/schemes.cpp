@@ -8,17 +8,20 @@ namespace {
 /// A scene whose physics nobody reads would be another scene without saying so.
 template <int Dim>
 void refuse_unread(const Scheme& scheme, const Simulation<Dim>& s) {
-    const auto check = [&](bool wanted, const char* stage, const char* what) {
+    const auto check = [&](bool wanted, const char* stage, const char* what, const char* accepted = "wcsph") {
         const bool there =
             std::ranges::any_of(s.stages, [stage](const Stage<Dim>& each) { return each.name == stage; });
         if (wanted && !there) {
             throw UserError("the scheme " + std::string(scheme.name) + " has no " + what +
-                            "; accepted with it: wcsph");
+                            "; accepted with it: " + accepted);
         }
     };
     check(s.turbulence.has_value(), "eddy_viscosity", "turbulence");
     check(s.wall_friction.has_value(), "wall_function", "wall function");
     check(s.flow_driver.has_value(), "flow_driver", "flow driver");
+    // Of a compressible scheme, p = 0 at the surface follows from its density.
+    check(s.free_surface.has_value() && !scheme.compressible, "free_surface", "free surface",
+          "wcsph, and every scheme that finds it");
 }
 
 } // namespace

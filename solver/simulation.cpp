@@ -43,6 +43,19 @@ int first_particle(int count, Predicate&& predicate) {
     return -1;
 }
 
+/// First particle whose velocity is not finite, or -1.
+template <int Dim>
+int first_without_velocity(const Particles<Dim>& particles) {
+    return first_particle(static_cast<int>(particles.size()), [&](int k) {
+        for (int d = 0; d < Dim; ++d) {
+            if (!std::isfinite(particles.velocity[d][k])) {
+                return true;
+            }
+        }
+        return false;
+    });
+}
+
 template <int Dim>
 int fastest_particle(const Particles<Dim>& particles) {
     int fastest = 0;
@@ -60,19 +73,22 @@ int fastest_particle(const Particles<Dim>& particles) {
     return fastest;
 }
 
+/// A scene that starts with a velocity that is no number: told before the step spreads it to the neighbours,
+/// or takes it for a limit of its own length.
+template <int Dim>
+void check_start(const Simulation<Dim>& simulation) {
+    const int i = first_without_velocity(simulation.particles);
+    if (i >= 0) {
+        diverge(simulation, "velocity not finite: " + place(simulation, i));
+    }
+}
+
 template <int Dim>
 void check_survival(const Simulation<Dim>& simulation) {
     const Particles<Dim>& particles = simulation.particles;
     const double energy = kinetic_energy(simulation);
     if (!std::isfinite(energy)) {
-        const int i = first_particle(static_cast<int>(particles.size()), [&](int k) {
-            for (int d = 0; d < Dim; ++d) {
-                if (!std::isfinite(particles.velocity[d][k])) {
-                    return true;
-                }
-            }
-            return false;
-        });
+        const int i = first_without_velocity(particles);
         diverge(simulation,
                 "velocity not finite: " + (i < 0 ? "its square overflows" : place(simulation, i)));
     }
@@ -122,6 +138,9 @@ template <int Dim>
 void advance(Simulation<Dim>& simulation) {
     using Clock = std::chrono::steady_clock;
     ++simulation.step;
+    if (simulation.step == 1) {
+        check_start(simulation);
+    }
     simulation.positions_time = simulation.time;
     simulation.in_step = true;
     simulation.set_body_force(simulation.time);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "sphvv/verification/case.hpp"
+
 #include <nlohmann/json.hpp>
 
 #include <cstdint>
@@ -10,12 +12,13 @@
 #include <vector>
 
 /// Scenes at and past the edge of what a scheme is made for. Each row says what must become of it, and why.
+/// The scenes are in verification/extreme_scenes/, one kind of edge a file.
 namespace sphvv::verification {
 
 enum class Fate {
     bounded,  ///< survives, with an error under a bound from an exact solution or a scaling argument
     survives, ///< survives; nothing more can be claimed
-    ends      ///< ends early, with this diagnosis
+    ends      ///< ends early, with one of these diagnoses
 };
 std::string_view to_string(Fate fate);
 
@@ -32,10 +35,11 @@ struct ExtremeRow {
     std::string must;   ///< what must become of it, and what `error` is
     std::string why;    ///< theory or source
     Fate fate;
-    double bound = 0;        ///< of the error, where it survives
-    std::string diagnosis{}; ///< part of the text with which it must end
+    double bound = 0;                     ///< of the error, where it survives
+    std::vector<std::string> diagnoses{}; ///< how the text may begin with which it must end
     std::function<ExtremeOutcome(const std::string& scheme)> run{};
     std::string waiver{}; ///< reason for which another outcome is tolerated
+    Tier tier = Tier::quick;
 };
 
 struct ExtremeResult {
@@ -46,8 +50,17 @@ struct ExtremeResult {
     double seconds = 0;
 };
 
-/// All rows; the whole takes less than half a minute.
+/// The rows of every file in verification/extreme_scenes/. The quick ones take less than 45 s together, the
+/// nightly ones less than five minutes.
 std::span<const ExtremeRow> extreme_rows();
+
+/// A study is all rows of a tier.
+struct ExtremeStudy {
+    std::string name;
+    Tier tier;
+    std::string cost;
+};
+std::span<const ExtremeStudy> extreme_studies();
 
 /// FAIL for another fate or diagnosis, for an error that is not finite, and for one above its bound.
 void judge(ExtremeResult& result);

@@ -160,7 +160,9 @@ std::vector<double> volumes(const solver::Simulation<Dim>& simulation) {
                                simulation.particle_mass / simulation.density);
     if (const solver::Field* density = simulation.particles.find("density")) {
         for (std::size_t i = 0; i < volume.size(); ++i) {
-            volume[i] = simulation.particle_mass / (*density)[0][i];
+            const double rho = (*density)[0][i];
+            // Of a run that has ended early the density may be anything, and the norms need a volume.
+            volume[i] = rho > 0 && std::isfinite(rho) ? simulation.particle_mass / rho : volume[i];
         }
     }
     return volume;

@@ -13,6 +13,8 @@ STABLE, GROWS, ENDED = "#eef3f7", "#e8a33d", "#9c2a2a"
 NOTE = ("Each number is the largest stable step over the published bound, which is 0.4 h/c0 for sound and 0.125 h²/ν for viscosity. "
         "Theory: von Neumann analysis of the discrete equations on a square lattice; measured: bisection with the solver, to 0.5 %. "
         "Unstable is what grows by more than √2 in 200 steps. – where there is no limit.")
+MATRIX_NOTE = ("A number: the error over its bound, which comes from theory; what passes is at most 1. survives: nothing more is claimed. ends: ended with the "
+               "diagnosis that it must end with. waived: is not as it must be, for a reason that is given with the row.")
 
 
 def limits_table(names, limits):
@@ -44,6 +46,27 @@ def extreme_table(names, scenes):
                   Column("verdict", "verdict"), Column("waiver", "reason of the waiver"), Column("fate", "fate", shown=False),
                   Column("diagnosis", "diagnosis", shown=False), Column("steps", "steps", shown=False), Column("seconds", "seconds", shown=False),
                   Column("reason", "reason", shown=False)] + file_column(scenes), rows, style="cards")
+
+
+def extreme_matrix(names, scenes):
+    """One row a scene, one column a scheme: what became of it. Variants of one scheme are scenes of their own."""
+    schemes = sorted({row["scheme"].split(":")[0] for row in scenes})
+    rows = {}
+    for row in scenes:
+        scheme, _, variant = row["scheme"].partition(":")
+        name = f"{row['name']} ({variant})" if variant else row["name"]
+        rows.setdefault(name, {"name": name})[scheme] = extreme_cell(row)
+    return Table(names.unique("extreme-matrix"), "Scenes at and past the edge of what the schemes are made for",
+                 [Column("name", "scene")] + [Column(scheme, scheme) for scheme in schemes], list(rows.values()), [MATRIX_NOTE])
+
+
+def extreme_cell(row):
+    """The share of its bound that an error takes up, or the fate that came about."""
+    if not row["passes"]:
+        return "waived" if row["waiver"] else "FAIL"
+    if row["fate"] != "bounded":
+        return row["fate"]
+    return f"{row['error'] / row['bound']:.1g}" if row["bound"] else "0"
 
 
 def edges(values):
@@ -98,7 +121,8 @@ def view(page):
     scenes = page.results["extreme_rows"]
     if not limits and not maps and not scenes:
         return None
-    return {"extreme": page.keep(extreme_table(page.table_names, scenes)) if scenes else None,
+    return {"extreme_matrix": page.keep(extreme_matrix(page.table_names, scenes)) if scenes else None,
+            "extreme": page.keep(extreme_table(page.table_names, scenes)) if scenes else None,
             "limits": page.keep(limits_table(page.table_names, limits)) if limits else None,
             "maps": [{"plot": page.draw(map_picture(page.figure_names.unique(chart["study"], chart["scheme"]), chart, page.stamp([chart["result"]]))),
                       "table": page.keep(map_table(page.table_names, chart))} for chart in maps]}

@@ -616,6 +616,8 @@ class Odd(WithFolder):
         self.assertIn("stable to", text)
         self.assertIn("0 of 1 extreme scenes end as they must", text)
         self.assertIn("the error is above its bound", text)
+        matrix = files["tables/extreme-matrix.csv"].decode()
+        self.assertIn("FAIL", matrix)
         table = files["tables/stability-limits.csv"].decode()
         self.assertIn("isph_df", table)
         picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map"))

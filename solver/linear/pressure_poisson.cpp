@@ -352,17 +352,27 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
         solver.compute(matrix);
         const Eigen::VectorXd guess = p;
         p = solver.solveWithGuess(source_, guess);
-        result.iterations = static_cast<int>(solver.iterations());
+        const auto iterations = static_cast<int>(solver.iterations());
+        result.iterations += iterations;
         result.residual = solver.error();
         result.converged = solver.info() == Eigen::Success;
-        result.matrix_entries =
-            (neighbours_->pairs() + size()) * (1 + std::int64_t{products_per_iteration} * result.iterations);
+        result.matrix_entries +=
+            (neighbours_->pairs() + size()) * (1 + std::int64_t{products_per_iteration} * iterations);
     };
     using Conditioner = CellPreconditioner<PressurePoisson>;
-    if (symmetric()) {
-        run(Eigen::ConjugateGradient<PairMatrix<Dim>, Eigen::Lower | Eigen::Upper, Conditioner>(), 1);
-    } else {
-        run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);
+    const auto run_from_guess = [&] {
+        if (symmetric()) {
+            run(Eigen::ConjugateGradient<PairMatrix<Dim>, Eigen::Lower | Eigen::Upper, Conditioner>(), 1);
+        } else {
+            run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);
+        }
+    };
+    const bool from_nothing = p.isZero(0);
+    run_from_guess();
+    if (!result.converged && !from_nothing) {
+        // The residual of a guess far larger than the solution ends at the guess's round-off.
+        p.setZero();
+        run_from_guess();
     }
     if (singular()) {
         remove_mean(p.data(), size());

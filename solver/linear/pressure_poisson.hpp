@@ -87,7 +87,7 @@ public:
     /// ones.
     void set_condition(int i, double own);
 
-    /// Solves for `pressure`, which holds the first guess.
+    /// Solves for `pressure`, which holds the first guess; where that leads nowhere, from zero.
     LinearSolve solve(double* pressure);
 
     /// y = A x.

@@ -1347,6 +1347,20 @@ TEST(AnInviscidScene, CarriesNoViscosity) {
     }
 }
 
+// One that nobody looks for would be read where nothing was written.
+TEST(Scheme, RefusesAFreeSurfaceThatItDoesNotFind) {
+    const Detector& detector = free_surface::find("covered_ball");
+    for (const Scheme* scheme : schemes::all()) {
+        auto scene = still_scene<2>(*scheme, {}, 16);
+        scene.free_surface = FreeSurface{&detector, detector.threshold(2, 2.6)};
+        if (scheme->name == "isph_mls") {
+            EXPECT_THROW(scheme->assemble(scene), UserError);
+        } else {
+            EXPECT_NO_THROW(scheme->assemble(scene)) << scheme->name;
+        }
+    }
+}
+
 // A free surface is where p = 0: a background pressure would blow the fluid apart.
 TEST(Wcsph, HasNoBackgroundPressureUnderAFreeSurface) {
     const Scheme& wcsph = schemes::find("wcsph");

@@ -307,6 +307,25 @@ TYPED_TEST(SimulationTest, DiesOfTooMuchKineticEnergy) {
                      "t = 0.25, step 1"});
 }
 
+// Before a stage spreads it, or takes it for a limit of the step.
+TYPED_TEST(SimulationTest, DoesNotStartWithAVelocityThatIsNotANumber) {
+    constexpr int Dim = TypeParam::value;
+    for (const double value : {not_a_number, infinity}) {
+        Points<Dim> points;
+        std::array<double, Dim> point;
+        point.fill(0.25);
+        append<Dim>(points, point);
+        append<Dim>(points, point);
+        Simulation<Dim> scene = scene_of<Dim>(points);
+        scene.particles.velocity[Dim - 1][1] = value;
+        bool ran = false;
+        scene.add_stage("first", [&](Simulation<Dim>&) { ran = true; });
+        expect_mentions(diagnosis([&] { advance(scene); }),
+                        {"velocity not finite", "particle 101 at (0.25, 0.25", "t = 0, step 1"});
+        EXPECT_FALSE(ran);
+    }
+}
+
 TYPED_TEST(SimulationTest, DiesOfParticlesThatMeet) {
     constexpr int Dim = TypeParam::value;
     expect_mentions(fate<Dim>(0.015, [](Simulation<Dim>&) {}),
