@@ -1348,7 +1348,7 @@ TEST(AnInviscidScene, CarriesNoViscosity) {
 }
 
 // One that nobody looks for would be read where nothing was written.
-TEST(Scheme, RefusesAFreeSurfaceThatItDoesNotFind) {
+TEST(FreeSurface, IsRefusedByASchemeThatDoesNotFindIt) {
     const Detector& detector = free_surface::find("covered_ball");
     for (const Scheme* scheme : schemes::all()) {
         auto scene = still_scene<2>(*scheme, {}, 16);
