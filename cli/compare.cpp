@@ -4,7 +4,6 @@
 #include "output.hpp"
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -14,28 +13,6 @@ namespace {
 
 using verification::Comparison;
 using verification::ResultTree;
-
-/// A result file (HDF5 or its JSON twin) or a baseline. Throws UserError in one sentence for anything else.
-ResultTree read_results(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream || (stream >> std::ws).peek() != '{') {
-        ResultTree tree = verification::read_results_hdf5(path);
-        verification::check_result_file(tree, path);
-        return tree;
-    }
-    ResultTree tree = ResultTree::parse(stream, nullptr, false);
-    const auto is = [&](const char* name, const ResultTree& value) {
-        return tree.is_object() && tree.contains(name) && tree.at(name) == value;
-    };
-    if (is("format", "sphvv-results")) {
-        verification::check_result_file(tree, path);
-        return tree;
-    }
-    if (!is("format", "sphvv-baseline") || !is("format_version", 1)) {
-        throw UserError("'" + path + "' is neither a result file of sphvv (HDF5 or JSON) nor a baseline");
-    }
-    return tree;
-}
 
 ResultTree tree_of(const Comparison& comparison) {
     ResultTree rows = ResultTree::array();
@@ -55,7 +32,8 @@ ResultTree tree_of(const Comparison& comparison) {
 }
 
 int compare_files(const std::string& baseline, const std::string& current, const Common& common) {
-    const Comparison comparison = verification::compare(read_results(baseline), read_results(current));
+    const Comparison comparison = verification::compare(verification::read_comparable(baseline),
+                                                        verification::read_comparable(current));
     if (common.json != "-") {
         std::cout << markdown(comparison);
     }
@@ -79,7 +57,7 @@ std::optional<ResultTree> old_baseline(const std::string& path) {
     if (!std::filesystem::exists(path)) {
         return {};
     }
-    ResultTree tree = read_results(path);
+    ResultTree tree = verification::read_comparable(path);
     if (tree.at("format") != "sphvv-baseline") {
         throw UserError("--baseline '" + path +
                         "' is a result file and not a baseline, so it is not overwritten");
@@ -107,7 +85,7 @@ int refuse_to_bless(const std::string& why) {
 }
 
 int bless(const BlessOptions& options) {
-    const ResultTree results = read_results(options.current);
+    const ResultTree results = verification::read_comparable(options.current);
     const std::optional<ResultTree> old = old_baseline(options.baseline);
     ResultTree reduced;
     try {

@@ -88,16 +88,16 @@ int answer(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return app.exit(success); // --help, --version
     } catch (const CLI::ParseError& error) {
-        std::cerr << "sphvv: " << error.what() << " (see sphvv --help)\n";
+        std::cerr << "sphvv: " << cli::on_one_line(error.what()) << " (see sphvv --help)\n";
         return wrong_use;
     }
     try {
         return act();
     } catch (const UserError& error) {
-        std::cerr << "sphvv: " << error.what() << '\n';
+        std::cerr << "sphvv: " << cli::on_one_line(error.what()) << '\n';
         return wrong_use;
     } catch (const std::invalid_argument& error) {
-        std::cerr << "sphvv: " << error.what() << '\n';
+        std::cerr << "sphvv: " << cli::on_one_line(error.what()) << '\n';
         return wrong_use;
     } catch (const cli::Interrupted& interrupted) {
         std::cerr << "sphvv: interrupted\n";
@@ -106,7 +106,7 @@ int answer(int argc, char** argv) {
         std::cerr << "sphvv: not enough memory for this scene\n";
         return not_finished;
     } catch (const std::exception& error) {
-        std::cerr << "sphvv: internal error: " << error.what() << '\n';
+        std::cerr << "sphvv: internal error: " << cli::on_one_line(error.what()) << '\n';
         return not_finished;
     }
 }

@@ -72,6 +72,14 @@ void write_text(const std::string& path, const std::string& text) {
     solver::storage::write_atomically(path, text);
 }
 
+std::string on_one_line(std::string message) {
+    for (char& c : message) {
+        const auto code = static_cast<unsigned char>(c);
+        c = code < 0x20 || code == 0x7F ? '?' : c;
+    }
+    return message;
+}
+
 ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {

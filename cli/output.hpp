@@ -27,6 +27,10 @@ void check_writable(const std::string& path, std::string_view option);
 /// Writes text to a file, or to standard output for "-". Throws UserError if it cannot be written whole.
 void write_text(const std::string& path, const std::string& text);
 
+/// A message for standard error: control characters, which it may quote from a file, become '?', so that it
+/// is one line.
+std::string on_one_line(std::string message);
+
 /// Progress on standard error: a bar on a terminal, otherwise one line when something has finished.
 class ProgressLine {
 public:

@@ -2,11 +2,11 @@
 
 #include "sphvv/solver/snapshots/snapshot.hpp"
 #include "sphvv/solver/snapshots/xdmf.hpp"
-
-#include <toml++/toml.h>
+#include "sphvv/solver/storage/trial_reading.hpp"
 
 #include "commands.hpp"
 #include "output.hpp"
+#include "scene_file.hpp"
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -33,68 +33,19 @@ struct Options {
     bool dry_run = false;
 };
 
-/// A scene as it is described before its keys are resolved.
-struct Description {
-    std::string flow;
-    std::string scheme;
-    int n = 0;
-    int seed = 1;
-    solver::Assignments settings;
-};
-
-Description read_scene_file(const std::string& path) {
-    Description description;
-    toml::table table;
-    try {
-        table = toml::parse_file(path);
-    } catch (const toml::parse_error& error) {
-        throw UserError("--scene: '" + path + "', line " + std::to_string(error.source().begin.line) + ": " +
-                        std::string(error.description()));
+/// n or seed, within what a scene file and the command line accept.
+int count_of(const std::string& text, const std::string& what) {
+    const double value = solver::parse_number(text, what);
+    if (value < 1 || value > 1e6 || value != std::floor(value)) {
+        throw UserError(what + ": " + text + " is not an integer from 1 to 1000000");
     }
-    const auto wrong = [&](const std::string& key, const std::string& wanted) {
-        return UserError("--scene: '" + path + "': '" + key + "' must be " + wanted);
-    };
-    const auto text_of = [&](const std::string& key, const toml::node& node) -> std::string {
-        if (const auto* text = node.as_string()) {
-            return text->get();
-        }
-        if (const auto number = node.value<double>()) {
-            return solver::shortest(*number);
-        }
-        throw wrong(key, "a number or a text");
-    };
-    for (const auto& [name, node] : table) {
-        const std::string key(name.str());
-        if (key == "case" || key == "scheme") {
-            const auto text = node.value<std::string>();
-            if (!text) {
-                throw wrong(key, "a text");
-            }
-            (key == "case" ? description.flow : description.scheme) = *text;
-        } else if (key == "n" || key == "seed") {
-            const auto number = node.value_exact<std::int64_t>();
-            if (!number || *number < 1 || *number > 1'000'000) {
-                throw wrong(key, "an integer from 1 to 1000000");
-            }
-            (key == "n" ? description.n : description.seed) = static_cast<int>(*number);
-        } else if (key == "set" && node.is_table()) {
-            for (const auto& [set_name, value] : *node.as_table()) {
-                description.settings[std::string(set_name.str())] =
-                    text_of(std::string(set_name.str()), value);
-            }
-        } else {
-            std::string sentence = "--scene: '" + path;
-            sentence +=
-                "': there is no key '" + key + "'; accepted: case, scheme, n, seed, and a table [set]";
-            throw UserError(sentence);
-        }
-    }
-    return description;
+    return static_cast<int>(value);
 }
 
 /// The description that a snapshot carries.
-Description read_snapshot_scene(const std::string& path) {
-    Description description;
+SceneDescription read_snapshot_scene(const std::string& path) {
+    SceneDescription description;
+    solver::storage::read_in_trial(path);
     const solver::SnapshotHeader header = solver::read_snapshot_header(path);
     description.settings["end_time"] = solver::shortest(header.end_time);
     for (const auto& [key, value] : header.metadata) {
@@ -103,9 +54,9 @@ Description read_snapshot_scene(const std::string& path) {
         } else if (key == "scheme") {
             description.scheme = value;
         } else if (key == "n") {
-            description.n = static_cast<int>(solver::parse_number(value, path + ": n"));
+            description.n = count_of(value, path + ": n");
         } else if (key == "seed") {
-            description.seed = static_cast<int>(solver::parse_number(value, path + ": seed"));
+            description.seed = count_of(value, path + ": seed");
         } else if (key.starts_with("set.")) {
             description.settings[key.substr(4)] = value;
         }
@@ -114,10 +65,10 @@ Description read_snapshot_scene(const std::string& path) {
 }
 
 /// What the command line says is laid over what the scene file or the snapshot says.
-Description describe(const Options& options) {
-    Description description{"", "isph_dfs", 40, 1, {}};
+SceneDescription describe(const Options& options) {
+    SceneDescription description{"", "isph_dfs", 40, 1, {}};
     if (!options.scene_file.empty()) {
-        const Description file = read_scene_file(options.scene_file);
+        const SceneDescription file = read_scene_file(options.scene_file);
         description = {file.flow, file.scheme.empty() ? description.scheme : file.scheme,
                        file.n > 0 ? file.n : description.n, file.seed, file.settings};
     }
@@ -147,7 +98,7 @@ Description describe(const Options& options) {
     return description;
 }
 
-SceneRecord scene_of(const Description& description) {
+SceneRecord scene_of(const SceneDescription& description) {
     SceneRecord scene =
         resolve_scene(verification::cases::find(description.flow),
                       verification::variant_of(description.scheme), description.settings, description.n);
@@ -258,6 +209,7 @@ public:
         for (std::size_t k = 0; static_cast<double>(k) * every_ < next_ - every_ / 2; ++k) {
             try {
                 const std::filesystem::path file = path_of(k);
+                solver::storage::read_in_trial(file);
                 const auto header = solver::read_snapshot_header(file);
                 if (header.metadata == metadata && header.time <= t) {
                     frames_.push_back(solver::xdmf_frame(file));

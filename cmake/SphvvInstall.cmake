@@ -5,7 +5,7 @@ install(TARGETS sphvv_analytic sphvv_solver sphvv_verification EXPORT sphvvTarge
 install(EXPORT sphvvTargets NAMESPACE sphvv:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sphvv)
 foreach(room analytic solver verification)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sphvv
-          FILES_MATCHING PATTERN "*.hpp" PATTERN tests EXCLUDE)
+          FILES_MATCHING PATTERN "*.hpp" PATTERN tests EXCLUDE PATTERN fuzz EXCLUDE)
 endforeach()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/sphvvConfig.cmake.in ${PROJECT_BINARY_DIR}/sphvvConfig.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sphvv)

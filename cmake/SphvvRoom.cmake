@@ -54,6 +54,37 @@ function(sphvv_test room name label)
   set_tests_properties(${room}.${name} PROPERTIES LABELS ${label} ENVIRONMENT OMP_WAIT_POLICY=passive)
 endfunction()
 
+# Everything that scripts/fuzz runs.
+add_custom_target(fuzz_targets)
+
+# sphvv_fuzz(ROOM NAME READERS … [MUTATOR …] LINK …): the fuzz target ROOM/fuzz/NAME.cpp. In every build a program replays the
+# corpus ROOM/fuzz/corpus/NAME, one CTest test of the label `unit`. With SPHVV_FUZZ, fuzz/ROOM.NAME searches for more; only the
+# target and READERS, all that it reaches of ours, are compiled for that, with a look at every branch, and not the whole room.
+function(sphvv_fuzz room name)
+  cmake_parse_arguments(arg "" "" "READERS;MUTATOR;LINK" ${ARGN})
+  list(TRANSFORM arg_READERS PREPEND ${PROJECT_SOURCE_DIR}/)
+  set(sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/${name}.cpp ${arg_READERS})
+  set(programs ${room}_fuzz_${name}_replay)
+  add_executable(${programs} ${sources} ${PROJECT_SOURCE_DIR}/solver/fuzz/replay.cpp)
+  add_dependencies(unit_tests ${programs})
+  add_test(NAME ${room}.fuzz_${name} COMMAND ${programs} ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/corpus/${name})
+  set_tests_properties(${room}.fuzz_${name} PROPERTIES LABELS unit)
+  if(SPHVV_FUZZ)
+    list(APPEND programs ${room}_fuzz_${name})
+    add_executable(${room}_fuzz_${name} ${sources} ${arg_MUTATOR})
+    target_compile_options(${room}_fuzz_${name} PRIVATE -fsanitize=fuzzer-no-link)
+    target_compile_definitions(${room}_fuzz_${name} PRIVATE FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION)
+    add_dependencies(fuzz_targets ${programs}) # scripts/fuzz replays what it finds
+    target_link_options(${room}_fuzz_${name} PRIVATE -fsanitize=fuzzer)
+    set_target_properties(${room}_fuzz_${name} PROPERTIES OUTPUT_NAME ${room}.${name}
+                          RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/fuzz)
+  endif()
+  foreach(program IN LISTS programs)
+    target_include_directories(${program} PRIVATE ${PROJECT_BINARY_DIR}/include)
+    target_link_libraries(${program} PRIVATE ${arg_LINK} sphvv_options)
+  endforeach()
+endfunction()
+
 # sphvv_registry(ROOM FOLDER TYPE): the one-file rule. Every FOLDER/STEM.cpp must define
 # `const TYPE& sphvv::ROOM::FOLDER::STEM()`; a file that does not is a link error, so none can vanish silently.
 # Generates `std::span<const TYPE* const> sphvv::ROOM::FOLDER::all()`, in the order of the file names.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <map>
 
@@ -435,6 +436,25 @@ std::string_view to_string(Change change) {
 
 bool Comparison::fails() const {
     return std::ranges::any_of(differences, [](const Difference& d) { return d.change >= Change::work; });
+}
+
+ResultTree read_comparable(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream || (stream >> std::ws).peek() != '{') {
+        ResultTree tree = read_results_hdf5(path);
+        check_result_file(tree, path);
+        return tree;
+    }
+    ResultTree tree = ResultTree::parse(stream, nullptr, false);
+    if (member(tree, "format") == "sphvv-results") {
+        check_result_file(tree, path);
+        return tree;
+    }
+    if (member(tree, "format") != "sphvv-baseline" || member(tree, "format_version") != 1) {
+        throw UserError("'" + path.string() +
+                        "' is neither a result file of sphvv (HDF5 or JSON) nor a baseline");
+    }
+    return tree;
 }
 
 Comparison compare(const ResultTree& baseline, const ResultTree& current) {

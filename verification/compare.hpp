@@ -41,6 +41,10 @@ struct Comparison {
     bool fails() const;
 };
 
+/// Reads a result file (HDF5 or its JSON twin) or a baseline. Throws UserError in one sentence for anything
+/// else.
+ResultTree read_comparable(const std::filesystem::path& path);
+
 /// Holds results against a baseline; both may be full results (of `sphvv operators` or `sphvv verify`) or
 /// reduced ones (reduced_for_baseline). Rungs are found by study and n, whatever their order in the file.
 ///

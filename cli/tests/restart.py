@@ -177,13 +177,102 @@ class Restart(unittest.TestCase):
         self.assertTrue(content(out) == before)
         self.assert_nothing_else(self.folder, ())
 
-    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
-    def test_a_folder_that_cannot_be_written_is_found_first(self):
+    def assert_refused(self, result, *fragments):
+        """Exit status 2 and one sentence that names what is wrong."""
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+        for fragment in fragments:
+            self.assertIn(fragment, result.stderr)
+
+    def closed_folder(self):
+        """A folder that this user cannot write to; root can do so everywhere but in the kernel's own."""
+        if os.geteuid() == 0:
+            self.assertTrue(os.path.isdir("/sys/kernel"), "neither permissions nor /sys stop this user: no closed folder to test with")
+            return pathlib.Path("/sys/kernel")
         folder = self.folder / "closed"
         folder.mkdir(mode=0o500)
-        result = subprocess.run(command(SCENES[0], folder / "run.h5"), capture_output=True, text=True, check=False)
-        self.assertEqual(result.returncode, 2)
-        self.assertIn(str(folder), result.stderr)
+        return folder
+
+    def commands_with_output(self, out):
+        """One of every kind of command that writes a result, as short as it can be."""
+        return [command(SCENES[0], out),
+                [SPHVV, "verify", "taylor_green", "--scheme", "wcsph", "--n", "12,16", "--set", "end_time=0.02", "--quiet", "--out", str(out)],
+                [SPHVV, "stability", "stability/extreme", "--quiet", "--out", str(out)]]
+
+    def test_a_folder_that_cannot_be_written_is_found_first(self):
+        (self.folder / "file").write_text("")
+        for folder in (self.closed_folder(), self.folder / "file"):
+            for words in self.commands_with_output(folder / "run.h5"):
+                with self.subTest(folder=folder.name, command=words[1]):
+                    result = subprocess.run(words, capture_output=True, text=True, check=False)
+                    self.assert_refused(result, "--out", str(folder))
+                    self.assertEqual(result.stdout, "")  # nothing was run
+        results = self.folder / "result.h5"
+        made = subprocess.run(self.commands_with_output(results)[1], capture_output=True, text=True, check=False)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        for folder in (self.closed_folder(), self.folder / "file"):
+            with self.subTest(folder=folder.name, command="report"):
+                result = subprocess.run([SPHVV, "report", str(results), "--out", str(folder / "report")], capture_output=True, text=True,
+                                        check=False)
+                self.assert_refused(result, str(folder))
+
+    def test_a_full_disk_loses_no_older_result(self):
+        # A limit on the size of files stands for the full disk, as above; every result is larger than 4 kB.
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+        out = self.folder / "run.h5"
+        out.write_text("older")
+        for words in self.commands_with_output(out)[1:]:
+            with self.subTest(command=words[1]):
+                result = subprocess.run(words, capture_output=True, text=True, preexec_fn=limit, check=False)
+                self.assert_refused(result, "run.h5", "cannot be written")
+                self.assertEqual(out.read_text(), "older")
+                self.assertEqual([path.name for path in self.folder.iterdir()], ["run.h5"])
+
+    def test_a_terminated_stability_study_keeps_what_is_complete(self):
+        out = self.folder / "stability.h5"
+        process = subprocess.Popen([SPHVV, "stability", "stability/acoustic", "stability/viscous", "--out", str(out)],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(process.stderr.readline().strip(), "stability/acoustic")  # complete
+        process.send_signal(signal.SIGTERM)
+        complaint = process.communicate()[1]
+        self.assertEqual(process.returncode, 128 + signal.SIGTERM, complaint)
+        self.assertEqual(complaint.strip().splitlines()[-1], "sphvv: interrupted")
+        with h5py.File(out) as file:
+            self.assertEqual({study.decode() for study in file["stability_limits"]["study"]}, {"stability/acoustic"})
+
+    def test_what_is_no_snapshot_is_refused_and_left_as_it_was(self):
+        scene = ("taylor_green", "wcsph", 12, ["end_time=0.02"])
+        whole = self.folder / "whole.h5"
+        words = [word for word in command(scene, whole) if word not in ("--every", every(scene))]
+        self.assertEqual(subprocess.run(words, capture_output=True, text=True, check=False).returncode, 0)
+        sound = whole.read_bytes()
+        wrong = {"half.h5": sound[: len(sound) // 2], "short.h5": sound[:-1], "text.h5": b"case = taylor_green\n", "empty.h5": b""}
+        for name, content_of in wrong.items():
+            (self.folder / name).write_bytes(content_of)
+        with h5py.File(self.folder / "foreign.h5", "w") as file:
+            file["x"] = np.arange(3)
+        changes = {"huge.h5": ("n", "1e300"), "half_n.h5": ("n", "12.5"), "line.h5": ("case", "a\nb"), "seed.h5": ("seed", "-1")}
+        for name, (key, value) in changes.items():
+            (self.folder / name).write_bytes(sound)
+            with h5py.File(self.folder / name, "r+") as file:
+                file["metadata"].attrs[key] = value
+        out = self.folder / "out" / "run.h5"
+        out.parent.mkdir()
+        for path in [self.folder / name for name in (*wrong, "foreign.h5", *changes, "missing.h5")]:
+            before = path.read_bytes() if path.exists() else None
+            with self.subTest(path.name):
+                result = subprocess.run([SPHVV, "run", "--resume", str(path), "--set", "end_time=0.03", "--out", str(out), "--quiet"],
+                                        capture_output=True, text=True, check=False)
+                self.assert_refused(result, *([path.name] if path.name != "line.h5" else ["a?b"]))
+                self.assertEqual(path.read_bytes() if path.exists() else None, before)
+                self.assertEqual(list(out.parent.iterdir()), [])
+        resumed = subprocess.run([SPHVV, "run", "--resume", str(whole), "--set", "end_time=0.03", "--out", str(out), "--quiet"],
+                                 capture_output=True, text=True, check=False)
+        self.assertEqual(resumed.returncode, 0, resumed.stderr)  # what all of them were made of
+        self.assertEqual(whole.read_bytes(), sound)
 
 
 if __name__ == "__main__":
