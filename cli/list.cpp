@@ -3,6 +3,7 @@
 #include "sphvv/solver/operators.hpp"
 #include "sphvv/solver/schemes.hpp"
 #include "sphvv/verification/cases.hpp"
+#include "sphvv/verification/conditioning.hpp"
 #include "sphvv/verification/extreme.hpp"
 #include "sphvv/verification/stability.hpp"
 
@@ -84,6 +85,15 @@ Entries studies() {
                            {"command", "stability"},
                            {"tier", to_string(study.tier)},
                            {"cost", study.cost}});
+    }
+    for (const verification::ConditioningStudy& study : verification::conditioning_studies()) {
+        entries.push_back(
+            {{"name", study.name},
+             {"summary", std::string(to_string(study.tier)) + " tier, " + study.cost + ": " + study.summary},
+             {"source", "each check's own"},
+             {"command", "stability"},
+             {"tier", to_string(study.tier)},
+             {"cost", study.cost}});
     }
     for (const verification::StabilityStudy& study : verification::stability_studies()) {
         entries.push_back(

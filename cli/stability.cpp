@@ -1,5 +1,6 @@
 #include "sphvv/verification/stability.hpp"
 
+#include "sphvv/verification/conditioning.hpp"
 #include "sphvv/verification/document.hpp"
 #include "sphvv/verification/extreme.hpp"
 #include "sphvv/verification/results.hpp"
@@ -11,10 +12,13 @@
 #include <chrono>
 #include <iostream>
 #include <memory>
+#include <span>
+#include <type_traits>
 
 namespace sphvv::cli {
 namespace {
 
+using verification::ConditioningStudy;
 using verification::ExtremeStudy;
 using verification::StabilityStudy;
 
@@ -27,48 +31,58 @@ struct Options {
     int threads = 1; // the lattices are too small to share
 };
 
+/// The studies that a command line asks for, by what they are made of.
+struct Wanted {
+    std::vector<const StabilityStudy*> stability;
+    std::vector<const ExtremeStudy*> extreme;
+    std::vector<const ConditioningStudy*> conditioning;
+
+    bool empty() const { return stability.empty() && extreme.empty() && conditioning.empty(); }
+};
+
+/// Calls act(studies, those of them that are wanted) for each kind.
+template <class Act>
+void for_each_kind(Wanted& wanted, const Act& act) {
+    act(verification::stability_studies(), wanted.stability);
+    act(verification::extreme_studies(), wanted.extreme);
+    act(verification::conditioning_studies(), wanted.conditioning);
+}
+
 [[noreturn]] void refuse_study(const std::string& name) {
     std::string names;
-    for (const StabilityStudy& study : verification::stability_studies()) {
-        names += study.name + ", ";
-    }
-    for (const ExtremeStudy& study : verification::extreme_studies()) {
-        names += (&study == &verification::extreme_studies().front() ? "" : ", ") + study.name;
-    }
+    Wanted none;
+    for_each_kind(none, [&](const auto studies, const auto&) {
+        for (const auto& study : studies) {
+            names += (names.empty() ? "" : ", ") + study.name;
+        }
+    });
     throw UserError("there is no stability study '" + name + "'; accepted: " + names);
 }
 
-struct Wanted {
-    std::vector<const StabilityStudy*> studies;
-    std::vector<const ExtremeStudy*> extreme;
-};
-
+/// Those named, or those of the tier; with schemes in place of their own only such as have schemes.
 Wanted studies_of(const Options& options) {
     Wanted wanted;
-    const auto studies = verification::stability_studies();
-    const auto extreme = verification::extreme_studies();
-    for (const StabilityStudy& study : studies) {
-        if (options.names.empty() && to_string(study.tier) == options.tier) {
-            wanted.studies.push_back(&study);
+    for_each_kind(wanted, [&](const auto studies, auto& chosen) {
+        const bool takes_schemes = std::is_same_v<decltype(studies), const std::span<const StabilityStudy>>;
+        for (const auto& study : studies) {
+            const bool of_tier = options.names.empty() && to_string(study.tier) == options.tier &&
+                                 (takes_schemes || options.schemes.empty());
+            if (of_tier || std::ranges::find(options.names, study.name) != options.names.end()) {
+                chosen.push_back(&study);
+            }
         }
-    }
-    for (const ExtremeStudy& study : extreme) {
-        if (options.names.empty() && options.schemes.empty() && to_string(study.tier) == options.tier) {
-            wanted.extreme.push_back(&study);
-        }
-    }
+    });
     for (const std::string& name : options.names) {
-        const auto of_extreme = std::ranges::find(extreme, name, &ExtremeStudy::name);
-        const auto found = std::ranges::find(studies, name, &StabilityStudy::name);
-        if (of_extreme != extreme.end()) {
-            wanted.extreme.push_back(&*of_extreme);
-        } else if (found != studies.end()) {
-            wanted.studies.push_back(&*found);
-        } else {
+        bool known = false;
+        Wanted none;
+        for_each_kind(none, [&](const auto studies, const auto&) {
+            known = known || std::ranges::any_of(studies, [&](const auto& s) { return s.name == name; });
+        });
+        if (!known) {
             refuse_study(name);
         }
     }
-    if (wanted.studies.empty() && wanted.extreme.empty()) {
+    if (wanted.empty()) {
         throw UserError("there is no stability study in the " + options.tier +
                         " tier; accepted: quick, nightly");
     }
@@ -105,16 +119,17 @@ int stability(const Options& options, const std::string& command_line) {
     const auto begin = std::chrono::steady_clock::now();
     verification::StabilityResults results;
     std::vector<verification::ExtremeResult> scenes;
+    std::vector<verification::ConditioningResults> conditioning;
     std::exception_ptr ended; // early: the studies that are complete are worth keeping
     {
         ProgressLine line(options.common.quiet);
+        const verification::StabilityProgress progress = [&](const std::string& what, double fraction) {
+            line.update(what, fraction);
+            stop_if_signalled();
+        };
         try {
-            for (const StabilityStudy* study : wanted.studies) {
-                auto found =
-                    run_stability(*study, options.schemes, [&](const std::string& what, double fraction) {
-                        line.update(what, fraction);
-                        stop_if_signalled();
-                    });
+            for (const StabilityStudy* study : wanted.stability) {
+                auto found = run_stability(*study, options.schemes, progress);
                 line.done(study->name);
                 if (options.common.json != "-") {
                     std::cout << markdown(found) << std::flush;
@@ -128,6 +143,13 @@ int stability(const Options& options, const std::string& command_line) {
             if (!scenes.empty() && options.common.json != "-") {
                 std::cout << verification::markdown(scenes) << std::flush;
             }
+            for (const ConditioningStudy* study : wanted.conditioning) {
+                conditioning.push_back(run_conditioning(*study, progress));
+                line.done(study->name);
+                if (options.common.json != "-") {
+                    std::cout << verification::markdown(conditioning.back()) << std::flush;
+                }
+            }
         } catch (...) {
             ended = std::current_exception();
         }
@@ -137,6 +159,7 @@ int stability(const Options& options, const std::string& command_line) {
     document["kind"] = "stability";
     add_to_document(results, document);
     verification::add_to_document(scenes, document);
+    verification::add_to_document(conditioning, document);
     if (!options.common.json.empty()) {
         write_text(options.common.json, document.dump(1) + "\n");
     }
@@ -146,7 +169,8 @@ int stability(const Options& options, const std::string& command_line) {
     if (ended) {
         std::rethrow_exception(ended);
     }
-    return std::max(exit_status(results), verification::exit_status(scenes));
+    return std::max(
+        {exit_status(results), verification::exit_status(scenes), verification::exit_status(conditioning)});
 }
 
 } // namespace

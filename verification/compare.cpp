@@ -25,8 +25,8 @@ constexpr std::array error_names{"l1", "l2", "linf"};
 constexpr std::array work_names{"steps", "pair_evaluations", "solver_iterations", "matrix_entries",
                                 "undetermined"};
 /// What a check demands: loosening one of these turns a wrong answer into a right one.
-constexpr std::array demand_names{"bound",     "at_least", "expected", "tolerance",
-                                  "reference", "is_bound", "theory",   "fate"};
+constexpr std::array demand_names{"bound",    "at_least", "expected", "tolerance", "reference",
+                                  "is_bound", "theory",   "fate",     "low",       "high"};
 
 /// Lists of checks, the members that identify one, the one that says whether it is as it must be, and what it
 /// measured.
@@ -47,6 +47,8 @@ const std::vector<CheckList>& check_lists() {
         {"stability_limits", {"scheme", "study", "limit"}, "passes", "measured", round_off_of_schemes},
         {"stability_maps", {"scheme", "study"}, "passes", "disagreements"},
         {"extreme_rows", {"scheme", "name"}, "passes", "error", round_off_of_schemes},
+        {"conditioning_rows", {"name", "study"}, "converged", "iterations_two_level"},
+        {"conditioning_checks", {"subject", "name", "study"}, "passes", "value", round_off_of_schemes},
     };
     return lists;
 }

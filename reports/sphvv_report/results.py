@@ -80,7 +80,16 @@ STABILITY_MAP = {"study": "text", "scheme": "text", "x_name": "text", "x": "numb
 EXTREME_ROW = {"name": "text", "scheme": "text", "must": "text", "why": "text", "fate": "text", "bound": "number", "survived": "flag",
                "diagnosis": "text", "error": "number", "steps": "number", "seconds": "number", "verdict": "text", "passes": "flag",
                "waiver": "text", "reason": "text"}
-STABILITY = {"stability_limits?": [STABILITY_LIMIT], "stability_maps?": [STABILITY_MAP], "extreme_rows?": [EXTREME_ROW]}
+CONDITIONING_ROW = {"study": "text", "name": "text", "laplacian": "text", "boundary": "text", "columns": "number", "rows": "number",
+                    "jitter": "number", "seed": "number", "coincident": "flag", "mean": "number", "unknowns": "number",
+                    "surface_share": "number", "least": "number", "greatest": "number", "condition": "number", "theory": "number",
+                    "condition_jacobi": "number", "theory_jacobi": "number", "diagonal_ratio": "number", "negative_share": "number",
+                    "least_of_field": "number", "iterations_jacobi": "number", "bound_jacobi": "number", "iterations_two_level": "number",
+                    "tolerance": "number", "converged": "flag", "residual": "number"}
+CONDITIONING_CHECK = {"study": "text", "subject": "text", "name": "text", "value": "number", "low": "number", "high": "number",
+                      "tolerance": "number", "why": "text", "verdict": "text", "passes": "flag", "reason": "text"}
+STABILITY = {"stability_limits?": [STABILITY_LIMIT], "stability_maps?": [STABILITY_MAP], "extreme_rows?": [EXTREME_ROW],
+             "conditioning_rows?": [CONDITIONING_ROW], "conditioning_checks?": [CONDITIONING_CHECK]}
 WORKBENCH = {"operators?": [OPERATOR], "operator_studies?": [OPERATOR_STUDY], "operator_properties?": [OPERATOR_PROPERTY],
              "operator_costs?": [OPERATOR_COST], "operator_fronts?": [OPERATOR_FRONT], "kernel_checks?": [KERNEL_CHECK],
              "known_errors?": [KERNEL_CHECK], "published_figures?": [PUBLISHED_FIGURE],
@@ -93,7 +102,7 @@ RESULT = {"format": "text", "format_version": "number", "command": "text", "prov
           **WORKBENCH, **STABILITY}
 # A file that holds none of these says nothing that a report could show.
 EVIDENCE = ("studies", "operator_studies", "operator_properties", "kernel_checks", "known_errors", "published_figures",
-            "seeded_faults", "stability_limits", "stability_maps", "extreme_rows")
+            "seeded_faults", "stability_limits", "stability_maps", "extreme_rows", "conditioning_rows", "conditioning_checks")
 VERDICTS = ("PASS", "FAIL", "INCONCLUSIVE", "NONE")
 
 

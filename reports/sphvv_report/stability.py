@@ -5,7 +5,7 @@ import numpy
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from . import figures
+from . import conditioning, figures
 from .operators import file_column, with_file
 from .tables import Column, Table
 
@@ -119,9 +119,11 @@ def view(page):
     """The chapter on stability; None where the files hold nothing of it."""
     limits, maps = page.results["stability_limits"], page.results["stability_maps"]
     scenes = page.results["extreme_rows"]
-    if not limits and not maps and not scenes:
+    matrices = conditioning.view(page)
+    if not limits and not maps and not scenes and not matrices:
         return None
-    return {"extreme_matrix": page.keep(extreme_matrix(page.table_names, scenes)) if scenes else None,
+    return {"conditioning": matrices,
+            "extreme_matrix": page.keep(extreme_matrix(page.table_names, scenes)) if scenes else None,
             "extreme": page.keep(extreme_table(page.table_names, scenes)) if scenes else None,
             "limits": page.keep(limits_table(page.table_names, limits)) if limits else None,
             "maps": [{"plot": page.draw(map_picture(page.figure_names.unique(chart["study"], chart["scheme"]), chart, page.stamp([chart["result"]]))),

@@ -153,6 +153,20 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
                                                  {"error", 2e-16},
                                                  {"passes", true},
                                                  {"waiver", ""}}});
+    before["conditioning_rows"] = ResultTree::array({{{"name", "periodic, 16 x 16"},
+                                                      {"study", "stability/conditioning"},
+                                                      {"converged", true},
+                                                      {"iterations_two_level", 24},
+                                                      {"tolerance", 1}}});
+    before["conditioning_checks"] = ResultTree::array({{{"subject", "periodic, 16 x 16"},
+                                                        {"name", "iterations"},
+                                                        {"study", "stability/conditioning"},
+                                                        {"value", 40},
+                                                        {"low", 1},
+                                                        {"high", 50},
+                                                        {"tolerance", 1},
+                                                        {"passes", true},
+                                                        {"waiver", ""}}});
     const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(before)));
     EXPECT_TRUE(compare(baseline, before).differences.empty());
     const auto with = [&](const auto& edit) {
@@ -162,6 +176,8 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
     };
     EXPECT_FALSE(with([](ResultTree& now) { now["stability_limits"][0]["measured"] = 4.53; }).fails());
     EXPECT_FALSE(with([](ResultTree& now) { now["extreme_rows"][0]["error"] = 9e-16; }).fails());
+    EXPECT_FALSE(
+        with([](ResultTree& now) { now["conditioning_rows"][0]["iterations_two_level"] = 25; }).fails());
     for (const auto& [list, name, value, change] :
          {std::tuple{"stability_limits", "measured", ResultTree(4.0), Change::error_level},
           {"stability_limits", "measured", ResultTree(nullptr), Change::error_level},
@@ -170,7 +186,13 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
           {"stability_maps", "disagreements", ResultTree(3), Change::error_level},
           {"extreme_rows", "bound", ResultTree(1.0), Change::demand},
           {"extreme_rows", "fate", ResultTree("survives"), Change::demand},
-          {"extreme_rows", "passes", ResultTree(false), Change::verdict}}) {
+          {"extreme_rows", "passes", ResultTree(false), Change::verdict},
+          {"conditioning_rows", "iterations_two_level", ResultTree(26), Change::error_level},
+          {"conditioning_rows", "converged", ResultTree(false), Change::verdict},
+          {"conditioning_checks", "value", ResultTree(42), Change::error_level},
+          {"conditioning_checks", "high", ResultTree(60), Change::demand},
+          {"conditioning_checks", "low", ResultTree(0.5), Change::demand},
+          {"conditioning_checks", "passes", ResultTree(false), Change::verdict}}) {
         ResultTree now = before;
         now[list][0][name] = value;
         EXPECT_EQ(count(compare(baseline, now), change), 1) << list << ' ' << name;

@@ -1,0 +1,129 @@
+"""Condition numbers of the pressure equation and iterations of its solver: their tables, and their pictures with theory drawn in."""
+
+import matplotlib
+from matplotlib.lines import Line2D
+
+from . import figures
+from .operators import file_column, with_file
+from .tables import Column, Table
+
+NOTE = ("Condition number: largest over least eigenvalue apart from constants (Lanczos), of Schwaiger's matrix, which is not symmetric, largest "
+        "over least singular value. Theory: the symbol of the lattice sum at every wave vector; under a surface, matrices over the rows. "
+        "Bound: of conjugate gradients, from the condition number under Jacobi's scaling. Field of values: its least real part; above 0 the "
+        "matrix is definite.")
+MORRIS, SCHWAIGER, DISORDERED, TWO_LEVELS = figures.COLOURS[0], figures.COLOURS[1], figures.COLOURS[2], figures.COLOURS[3]
+THEORY = dict(color="black", linestyle="--", linewidth=1.0, marker="")
+
+
+def rows_table(names, rows):
+    return Table(names.unique("conditioning"), "Matrices of the pressure equation, and iterations to 1e-8",
+                 [Column("name", "matrix"), Column("unknowns", "unknowns", "integer"), Column("condition", "condition number", "significant"),
+                  Column("theory", "theory", "significant"), Column("condition_jacobi", "under Jacobi's scaling", "significant"),
+                  Column("theory_jacobi", "theory", "significant"), Column("negative_share", "share of weights below 0", "significant"),
+                  Column("least_of_field", "field of values from", "significant", "1/m²"),
+                  Column("iterations_jacobi", "iterations, Jacobi", "integer"), Column("bound_jacobi", "bound", "integer"),
+                  Column("iterations_two_level", "iterations, two levels", "integer"), Column("residual", "residual", "scientific", shown=False)]
+                 + [Column(key, key, shown=False) for key in ("study", "laplacian", "boundary", "columns", "rows", "jitter", "seed", "surface_share",
+                                                              "least", "greatest", "diagonal_ratio", "converged")] + file_column(rows),
+                 with_file(rows), [NOTE], style="wide")
+
+
+def checks_table(names, checks):
+    return Table(names.unique("conditioning-checks"), "What theory owes of these matrices, and what they do",
+                 [Column("subject", "matrix"), Column("name", "what"), Column("value", "value", "significant"), Column("low", "at least", "significant"),
+                  Column("high", "at most", "significant"), Column("verdict", "verdict"), Column("reason", "why"), Column("why", "theory", shown=False),
+                  Column("study", "study", shown=False), Column("passes", "passes", shown=False)] + file_column(checks), with_file(checks), style="cards")
+
+
+def panels(rows):
+    """Rows against the number of particles, against disorder and against the share of the surface; the first ones fill two panels."""
+    plain = [row for row in rows if not row["coincident"] and not row["mean"]]
+    periodic = [row for row in plain if row["boundary"] == "periodic"]
+    schwaiger = [row for row in periodic if row["laplacian"] == "schwaiger"]
+    sides = {(row["study"], row["columns"]) for row in schwaiger}
+    number = [row for row in periodic if row["laplacian"] == "morris" and row["jitter"] in (0, 0.1) and (row["study"], row["columns"]) not in sides]
+    disorder = [row for row in periodic if (row["study"], row["columns"]) in sides]
+    share = [row for row in plain if row["boundary"] == "surface"]
+    return number, disorder, share
+
+
+def curve(axes, rows, x, y, **look):
+    points = [(x(row), row[y]) for row in rows if row[y] is not None]
+    axes.plot([a for a, _ in points], [b for _, b in points], **{"linestyle": "", "markersize": 5, **look})
+
+
+def line(axes, rows, x, y, **look):
+    curve(axes, sorted(rows, key=x), x, y, **look)
+
+
+def picture(name, title, rows, quantities, stamp):
+    """Three panels, one below the other. quantities: of each panel the curves (rows it takes, member, look)."""
+    number, disorder, share = panels(rows)
+    jitters = sorted({row["jitter"] for row in disorder})
+    spread = [(number, lambda row: row["unknowns"], "unknowns N"), (disorder, lambda row: jitters.index(row["jitter"]), "jitter [% of dx]"),
+              (share, lambda row: row["surface_share"], "share of the particles at the surface")]
+    spread = [panel for panel in spread if panel[0]]
+    handles = {}
+    with matplotlib.rc_context({**figures.STYLE, "svg.hashsalt": name}):
+        canvas, every = figures.new_canvas(title, len(spread), len(quantities))
+        for axes, (chosen, x, label) in zip(every, spread):
+            axes.set_yscale("log")
+            if chosen is disorder:
+                axes.set_xticks(range(len(jitters)), [f"{100 * jitter:g}" for jitter in jitters])
+            else:
+                axes.set_xscale("log")
+            axes.set_xlabel(label)
+            for text, takes, member, look in quantities:
+                taken = [row for row in chosen if takes(row)]
+                if any(row[member] is not None for row in taken):
+                    line(axes, taken, x, member, **look)
+                handles[text] = Line2D([], [], label=text, **{"linestyle": "", "markersize": 5, **look})
+            lattice = [row["theory"] for row in chosen if row["theory"] is not None and row["jitter"] == 0]
+            if chosen is disorder and lattice and "theory" in {member for _, _, member, _ in quantities}:
+                axes.axhline(lattice[0], **THEORY)
+        figures.label_above(every[0], title.split(" of ")[0].lower())
+        figures.add_legend(canvas, list(handles.values()))
+        svg = figures.finish(canvas, name, title, f"{title}: {len(number)} matrices against N, {len(disorder)} against jitter, {len(share)} against "
+                                                  "the share of the surface.", stamp)
+    return svg
+
+
+def is_morris(row):
+    return row["laplacian"] == "morris"
+
+
+def pictures(page, rows):
+    stamp = page.stamp(figures_of(rows))
+    name = page.figure_names.unique("conditioning", "condition")
+    condition = picture(name, "Condition number of the pressure equation", rows, [
+        ("Morris, lattice", lambda row: is_morris(row) and row["jitter"] == 0, "condition", dict(color=MORRIS, marker="o")),
+        ("Morris, jitter (five seeds)", lambda row: is_morris(row) and row["jitter"] > 0, "condition", dict(color=DISORDERED, marker="^")),
+        ("Schwaiger (singular values)", lambda row: not is_morris(row), "condition", dict(color=SCHWAIGER, marker="s", markerfacecolor="none")),
+        ("theory: lattice sums", is_morris, "theory", THEORY)], stamp)
+    made = [figures.Picture(name, "Condition number of the pressure equation against the number of particles, disorder, and the share of them with "
+                                  "p = 0 at the surface. It grows like N in the plane, little with disorder, and as the square of the depth below a surface.",
+                            condition)]
+    name = page.figure_names.unique("conditioning", "iterations")
+    iterations = picture(name, "Iterations of the pressure solver", rows, [
+        ("conjugate gradients, Jacobi", is_morris, "iterations_jacobi", dict(color=MORRIS, marker="o")),
+        ("their bound from the condition number", is_morris, "bound_jacobi", dict(color="black", marker="_", markersize=9)),
+        ("conjugate gradients, two levels", is_morris, "iterations_two_level", dict(color=TWO_LEVELS, marker="^")),
+        ("Schwaiger: Bi-CGSTAB, Jacobi", lambda row: not is_morris(row), "iterations_jacobi", dict(color=SCHWAIGER, marker="s", markerfacecolor="none"))],
+        stamp)
+    made.append(figures.Picture(name, "Iterations until the residual is 1e-8 of the source. On two levels they do not grow with the number of particles.",
+                                iterations))
+    return [page.draw(each) for each in made]
+
+
+def figures_of(rows):
+    """The results that rows came from."""
+    return list({id(row["result"]): row["result"] for row in rows}.values())
+
+
+def view(page):
+    """The part of the chapter on stability; None where the files hold nothing of it."""
+    rows, checks = page.results["conditioning_rows"], page.results["conditioning_checks"]
+    if not rows and not checks:
+        return None
+    return {"plots": pictures(page, rows) if any(panels(rows)) else [], "rows": page.keep(rows_table(page.table_names, rows)) if rows else None,
+            "checks": page.keep(checks_table(page.table_names, checks)) if checks else None}
