@@ -230,10 +230,9 @@ void measure_symmetric(const Discrete& discrete, const Product& A, const VectorX
                 singular ? root.normalized() : none, start);
     result.condition_jacobi = jacobi.condition();
     result.greatest_jacobi = jacobi.greatest;
-    const VectorXd x = start;
     const VectorXd y = discrete.on_unknowns(random_vector(diagonal.size(), 20261129));
     const VectorXd Ay = A(y);
-    result.asymmetry = std::abs(x.dot(Ay) - y.dot(A(x))) / (x.norm() * Ay.norm());
+    result.asymmetry = std::abs(start.dot(Ay) - y.dot(A(start))) / (start.norm() * Ay.norm());
     if (result.problem.boundary != PressureBoundary::periodic) {
         return;
     }
@@ -242,7 +241,7 @@ void measure_symmetric(const Discrete& discrete, const Product& A, const VectorX
         for (int d = 0; d < 2; ++d) {
             const std::vector<double>& place = discrete.particles.particles.position.components[d];
             VectorXd wave = VectorXd::NullaryExpr(
-                x.size(), [&](Eigen::Index i) { return std::cos(2 * pi * place[i] + phase); });
+                start.size(), [&](Eigen::Index i) { return std::cos(2 * pi * place[i] + phase); });
             wave.array() -= wave.mean();
             result.long_wave = std::min(result.long_wave, wave.dot(A(wave)) / wave.squaredNorm());
         }

@@ -4,6 +4,7 @@ import matplotlib
 from matplotlib.lines import Line2D
 
 from . import figures
+from .findings import unique_objects
 from .operators import file_column, with_file
 from .tables import Column, Table
 
@@ -36,7 +37,7 @@ def checks_table(names, checks):
 
 
 def panels(rows):
-    """Rows against the number of particles, against disorder and against the share of the surface; the first ones fill two panels."""
+    """Rows against the number of particles, against disorder (the sizes that Schwaiger's matrix has), and against the share of the surface."""
     plain = [row for row in rows if not row["coincident"] and not row["mean"]]
     periodic = [row for row in plain if row["boundary"] == "periodic"]
     schwaiger = [row for row in periodic if row["laplacian"] == "schwaiger"]
@@ -47,13 +48,9 @@ def panels(rows):
     return number, disorder, share
 
 
-def curve(axes, rows, x, y, **look):
-    points = [(x(row), row[y]) for row in rows if row[y] is not None]
+def draw(axes, rows, x, member, look):
+    points = [(x(row), row[member]) for row in sorted(rows, key=x) if figures.is_drawable(row[member])]
     axes.plot([a for a, _ in points], [b for _, b in points], **{"linestyle": "", "markersize": 5, **look})
-
-
-def line(axes, rows, x, y, **look):
-    curve(axes, sorted(rows, key=x), x, y, **look)
 
 
 def picture(name, title, rows, quantities, stamp):
@@ -68,15 +65,16 @@ def picture(name, title, rows, quantities, stamp):
         canvas, every = figures.new_canvas(title, len(spread), len(quantities))
         for axes, (chosen, x, label) in zip(every, spread):
             axes.set_yscale("log")
+            drawn = [row[member] for _, takes, member, _ in quantities for row in chosen if takes(row) and figures.is_drawable(row[member])]
+            axes.set_ylim(figures.set_log_axis(axes.yaxis, min(drawn, default=1), max(drawn, default=10)))
             if chosen is disorder:
                 axes.set_xticks(range(len(jitters)), [f"{100 * jitter:g}" for jitter in jitters])
             else:
                 axes.set_xscale("log")
+                axes.set_xlim(figures.set_log_axis(axes.xaxis, min(map(x, chosen)), max(map(x, chosen))))
             axes.set_xlabel(label)
             for text, takes, member, look in quantities:
-                taken = [row for row in chosen if takes(row)]
-                if any(row[member] is not None for row in taken):
-                    line(axes, taken, x, member, **look)
+                draw(axes, [row for row in chosen if takes(row)], x, member, look)
                 handles[text] = Line2D([], [], label=text, **{"linestyle": "", "markersize": 5, **look})
             lattice = [row["theory"] for row in chosen if row["theory"] is not None and row["jitter"] == 0]
             if chosen is disorder and lattice and "theory" in {member for _, _, member, _ in quantities}:
@@ -93,7 +91,7 @@ def is_morris(row):
 
 
 def pictures(page, rows):
-    stamp = page.stamp(figures_of(rows))
+    stamp = page.stamp(unique_objects(row["result"] for row in rows))
     name = page.figure_names.unique("conditioning", "condition")
     condition = picture(name, "Condition number of the pressure equation", rows, [
         ("Morris, lattice", lambda row: is_morris(row) and row["jitter"] == 0, "condition", dict(color=MORRIS, marker="o")),
@@ -113,11 +111,6 @@ def pictures(page, rows):
     made.append(figures.Picture(name, "Iterations until the residual is 1e-8 of the source. On two levels they do not grow with the number of particles.",
                                 iterations))
     return [page.draw(each) for each in made]
-
-
-def figures_of(rows):
-    """The results that rows came from."""
-    return list({id(row["result"]): row["result"] for row in rows}.values())
 
 
 def view(page):

@@ -430,6 +430,28 @@ def workbench():
     return tree
 
 
+def pressure_matrix(**more):
+    return {"study": "stability/conditioning", "name": "periodic, 16 x 16", "laplacian": "morris", "boundary": "periodic", "columns": 16,
+            "rows": 16, "jitter": 0.0, "seed": 1, "coincident": False, "mean": 0.0, "unknowns": 256, "surface_share": 0.0, "least": 38.0,
+            "greatest": 570.0, "condition": 15.0, "theory": 15.1, "condition_jacobi": 15.0, "theory_jacobi": 15.1, "diagonal_ratio": 1.0,
+            "negative_share": 0.0, "least_of_field": None, "iterations_jacobi": 20, "bound_jacobi": 40, "iterations_two_level": 19,
+            "tolerance": 1, "converged": True, "residual": 1e-9, **more}
+
+
+def conditioning():
+    """Matrices on each of the three axes, and checks of which one fails and one has no value."""
+    check = {"study": "stability/conditioning", "subject": "periodic, 16 x 16", "name": "condition number", "value": 15.0, "low": 14.9,
+             "high": 15.2, "tolerance": 0.0, "why": "the symbol", "verdict": "PASS", "passes": True, "reason": "the symbol"}
+    return {"conditioning_rows": [
+                pressure_matrix(), pressure_matrix(name="periodic, 32 x 32", columns=32, unknowns=1024, condition=60.0, theory=60.0),
+                pressure_matrix(name="periodic, 20 x 20, Schwaiger", columns=20, laplacian="schwaiger", jitter=0.5, condition=30.0, theory=None,
+                                condition_jacobi=None, theory_jacobi=None, bound_jacobi=None, least_of_field=36.0),
+                pressure_matrix(name="surface, 24 x 4", boundary="surface", surface_share=0.25)],
+            "conditioning_checks": [check, {**check, "name": "asymmetry", "value": 0.5, "low": 0.0, "high": 1e-12, "verdict": "FAIL", "passes": False,
+                                            "reason": "outside the band"},
+                                    {**check, "name": "measurement", "value": None, "verdict": "FAIL", "passes": False, "reason": "thrown: a bug"}]}
+
+
 def stability():
     """What sphvv stability writes: a limit that agrees, one that does not, one that there is not, and a map with a disagreement."""
     limit = {"study": "stability/acoustic", "kernel": "wendland_c2", "h_over_dx": 1.3, "limit": "acoustic", "published": 0.002,
@@ -443,7 +465,8 @@ def stability():
                                 "verdict": "FAIL", "passes": False, "reason": "1 of 6 points", "seconds": 1.0}],
             "extreme_rows": [{"name": "a single particle", "scheme": "wcsph", "must": "goes straight on", "why": "no neighbour", "fate": "bounded",
                               "bound": 1e-12, "survived": True, "diagnosis": "", "error": 2.0, "steps": 200, "seconds": 0.1, "verdict": "FAIL",
-                              "passes": False, "waiver": "", "reason": "the error is above its bound"}]}
+                              "passes": False, "waiver": "", "reason": "the error is above its bound"}],
+            **conditioning()}
 
 
 if __name__ == "__main__":

@@ -618,6 +618,13 @@ class Odd(WithFolder):
         self.assertIn("the error is above its bound", text)
         matrix = files["tables/extreme-matrix.csv"].decode()
         self.assertIn("FAIL", matrix)
+        self.assertIn("1 of 3 properties of pressure matrices are those of theory", text)
+        self.assertIn("asymmetry: 0.5", text)  # among the findings
+        self.assertIn("measurement: not finite", text)
+        self.assertIn("schwaiger", files["tables/conditioning.csv"].decode())
+        self.assertIn("thrown: a bug", files["tables/conditioning-checks.csv"].decode())
+        for drawn, words in (("condition", "theory: lattice sums"), ("iterations", "their bound from the condition number")):
+            self.assertIn(words, files[f"figures/conditioning__{drawn}.svg"].decode())
         table = files["tables/stability-limits.csv"].decode()
         self.assertIn("isph_df", table)
         picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map"))
