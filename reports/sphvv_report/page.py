@@ -420,7 +420,7 @@ class Builder:
                    (len(self.results["stability_limits"]), "step limit"),
                    (len(self.results["stability_maps"]), "stability map"),
                    (len(self.results["extreme_rows"]), "extreme scene"),
-                   (len(self.results["conditioning_rows"]), "pressure problem"),
+                   (len(self.results["conditioning_rows"]) or len(self.results["conditioning_checks"]), "pressure problem"),
                    (len(self.results["seeded_faults"]), "seeded fault")]
         return (cases if len(cases) <= 3 else [f"{len(cases)} cases"]) + [findings.plural(*each) for each in counted if each[0]]
 

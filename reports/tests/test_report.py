@@ -619,7 +619,7 @@ class Odd(WithFolder):
         matrix = files["tables/extreme-matrix.csv"].decode()
         self.assertIn("FAIL", matrix)
         self.assertIn("1 of 3 properties of pressure matrices are those of theory", text)
-        self.assertIn("asymmetry: 0.5", text)  # among the findings
+        self.assertIn("asymmetry: 5.00e−01, must be 0 to 1.00e−12", text)  # among the findings
         self.assertIn("measurement: not finite", text)
         self.assertIn("schwaiger", files["tables/conditioning.csv"].decode())
         self.assertIn("thrown: a bug", files["tables/conditioning-checks.csv"].decode())
