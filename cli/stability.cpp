@@ -110,7 +110,9 @@ int stability(const Options& options, const std::string& command_line) {
     use_threads(options.threads);
     const Wanted wanted = studies_of(options);
     for (const std::string& scheme : options.schemes) {
-        verification::lattice_state({.scheme = scheme}); // refused before anything runs
+        for (const StabilityStudy* study : wanted) {
+            check_scheme(*study, scheme); // refused before anything runs
+        }
     }
     check_writable(options.out, "--out");
     check_writable(options.common.json, "--json");

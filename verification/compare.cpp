@@ -25,8 +25,8 @@ constexpr std::array error_names{"l1", "l2", "linf"};
 constexpr std::array work_names{"steps", "pair_evaluations", "solver_iterations", "matrix_entries",
                                 "undetermined"};
 /// What a check demands: loosening one of these turns a wrong answer into a right one.
-constexpr std::array demand_names{"bound",    "at_least", "expected", "tolerance", "reference",
-                                  "is_bound", "theory",   "fate",     "low",       "high"};
+constexpr std::array demand_names{"bound",  "at_least",  "expected", "tolerance", "reference", "is_bound",
+                                  "theory", "theory_by", "low",      "high",      "fate"};
 
 /// Lists of checks, the members that identify one, the one that says whether it is as it must be, and what it
 /// measured.

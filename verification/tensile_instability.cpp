@@ -76,6 +76,25 @@ double swegle_number(const solver::Kernel& kernel, double h_over_dx) {
     return second_derivative(kernel, 1 / h_over_dx);
 }
 
+double smallest_transform(const solver::Kernel& kernel, double h_over_dx) {
+    constexpr int waves = 100;
+    constexpr int intervals = 200; // of Simpson's rule: good to 1e-6 of the value at k = 0
+    double smallest = 1;
+    for (int wave = 1; wave <= waves; ++wave) {
+        const double k = std::numbers::sqrt2 * std::numbers::pi * h_over_dx * wave / waves; // times h
+        double integral = 0;
+        for (int node = 0; node <= intervals; ++node) {
+            const double q = kernel.support * node / intervals;
+            const double weight = node == 0 || node == intervals ? 1 : node % 2 == 1 ? 4 : 2;
+            integral += weight * kernel.f(q) * q * std::cyl_bessel_j(0., k * q);
+        }
+        integral *= kernel.support / intervals / 3;
+        smallest = std::min(smallest, 2 * std::numbers::pi * kernel.normalisation[2] * integral);
+    }
+    constexpr double error = 1e-5; // of the quadrature, and of the Gaussian's edge
+    return smallest < -error ? smallest : std::max(smallest, 0.);
+}
+
 double lattice_growth(const solver::Kernel& kernel, double h_over_dx) {
     constexpr int steps = 12;
     const std::vector<Neighbour> neighbours = lattice_neighbours(kernel, h_over_dx);

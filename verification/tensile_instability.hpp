@@ -10,6 +10,12 @@ namespace sphvv::verification {
 /// Issa 2005 §2.8.
 double swegle_number(const solver::Kernel& kernel, double h_over_dx);
 
+/// Smallest value, over that at k = 0, of the kernel's Fourier transform in two dimensions,
+/// 2 pi int W(r) J_0(k r) r dr, at the wave numbers that a square lattice resolves, k <= sqrt(2) pi/dx. Where
+/// it is negative particles under pressure may pair: Dehnen & Aly 2012. It is their energy at the wave number
+/// k alone; the lattice adds that of every alias of k (lattice_growth).
+double smallest_transform(const solver::Kernel& kernel, double h_over_dx);
+
 /// Growth of the worst disturbance of an infinite square lattice in two dimensions under a uniform pressure:
 /// sigma^2 rho dx^2/p, with sigma (1/s) its rate; 0 where there is none that grows.
 ///

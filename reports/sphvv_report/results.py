@@ -72,10 +72,10 @@ CONSISTENCY_SUM = {"jitter": "number", "h_over_dx": "number", "neighbours": "num
                    "worst_first": "number"}
 SEEDED_FAULT = {"name": "text", "file": "text", "summary": "text", "caught": "flag", "caught_by": "text", "seconds": "number"}
 STABILITY_LIMIT = {"study": "text", "scheme": "text", "kernel": "text", "h_over_dx": "number", "limit": "text", "published": "number",
-                   "theory": "number", "measured": "number", "verdict": "text", "passes": "flag", "reason": "text", "runs": "number",
-                   "seconds": "number"}
+                   "theory": "number", "theory_by?": "text", "measured": "number", "low?": "number", "high?": "number", "verdict": "text",
+                   "passes": "flag", "reason": "text", "runs": "number", "seconds": "number"}
 STABILITY_MAP = {"study": "text", "scheme": "text", "x_name": "text", "x": "numbers", "y_name": "text", "y": "numbers", "theory": "numbers",
-                 "measured": "numbers", "grows": "numbers", "unstable": "number", "disagreements": "number", "undecided": "number",
+                 "measured": "numbers", "grows": "numbers", "criterion?": "text", "by_criterion?": "numbers", "unstable": "number", "disagreements": "number", "undecided": "number",
                  "verdict": "text", "passes": "flag", "reason": "text", "seconds?": "number"}
 EXTREME_ROW = {"name": "text", "scheme": "text", "must": "text", "why": "text", "fate": "text", "bound": "number", "survived": "flag",
                "diagnosis": "text", "error": "number", "steps": "number", "seconds": "number", "verdict": "text", "passes": "flag",
@@ -371,6 +371,8 @@ def check_map(chart, path):
             raise ValueError(f"{path}.{name} is not one value for each of x and y")
     if any(None in chart[name] for name in ("x", "y", "grows")) or chart["unstable"] is None:
         raise ValueError(f"{path}: x, y, grows and unstable must be finite")
+    if chart["criterion"] and (len(chart["by_criterion"]) != points or None in chart["by_criterion"]):
+        raise ValueError(f"{path}.by_criterion is not one finite value for each of x and y")
 
 
 def check_result(tree):

@@ -629,10 +629,23 @@ class Odd(WithFolder):
         self.assertIn("isph_df", table)
         picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map"))
         self.assertIn("theory says otherwise", picture)
-        for broken in ({"grows": [1.0]}, {"theory": [1.0] * 5}, {"x": [None, 1.0, 2.0]}, {"unstable": None}):
+        self.assertIn("unstable by w'' p", picture)
+        self.assertIn("w'' p < 0, is wrong at 2 of 6 points", text)
+        self.assertIn("linearised step", table)
+        for broken in ({"by_criterion": [1.0]}, {"by_criterion": [None] * 6}, {"grows": [1.0]}, {"theory": [1.0] * 5}, {"x": [None, 1.0, 2.0]}, {"unstable": None}):
             tree["stability_maps"] = [{**synthetic.stability()["stability_maps"][0], **broken}]
             with self.subTest(broken), self.assertRaises(ValueError):
                 results.check_result(json.loads(json.dumps(tree)))
+
+    def test_stability_of_an_older_file(self):
+        tree = {**synthetic.small(), **synthetic.stability()}
+        for limit in tree["stability_limits"]:
+            for name in ("theory_by", "low", "high"):
+                limit.pop(name, None)
+        for name in ("criterion", "by_criterion"):
+            del tree["stability_maps"][0][name]
+        files = self.report(tree, "old")
+        self.assertNotIn("unstable by", next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map")))
 
     def test_seeded_faults_alone_as_json(self):
         tree = {key: value for key, value in synthetic.workbench().items() if not key.startswith(("operator", "kernel", "known", "publ", "cons"))}

@@ -142,6 +142,8 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
                                                      {"scheme", "wcsph"},
                                                      {"limit", "acoustic"},
                                                      {"theory", 4.5},
+                                                     {"theory_by", "lattice sums"},
+                                                     {"high", 1.05},
                                                      {"measured", 4.51},
                                                      {"passes", true}}});
     before["stability_maps"] = ResultTree::array(
@@ -182,6 +184,8 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
          {std::tuple{"stability_limits", "measured", ResultTree(4.0), Change::error_level},
           {"stability_limits", "measured", ResultTree(nullptr), Change::error_level},
           {"stability_limits", "theory", ResultTree(5.0), Change::demand},
+          {"stability_limits", "theory_by", ResultTree("linearised step"), Change::demand},
+          {"stability_limits", "high", ResultTree(2.0), Change::demand},
           {"stability_limits", "passes", ResultTree(false), Change::verdict},
           {"stability_maps", "disagreements", ResultTree(3), Change::error_level},
           {"extreme_rows", "bound", ResultTree(1.0), Change::demand},
