@@ -5,6 +5,7 @@
 #include "sphvv/verification/cases.hpp"
 #include "sphvv/verification/conditioning.hpp"
 #include "sphvv/verification/extreme.hpp"
+#include "sphvv/verification/operator_results.hpp"
 #include "sphvv/verification/stability.hpp"
 
 #include "commands.hpp"
@@ -59,9 +60,19 @@ Entries schemes() {
 
 Entries studies() {
     Entries entries = Entries::array();
+    for (const auto& [tier, cost] : verification::operator_tiers) {
+        entries.push_back({{"name", "operators"},
+                           {"summary", std::string(to_string(tier)) + " tier, " +
+                                           verification::duration_text(cost) + ": all operators and kernels"},
+                           {"source", "each operator's own"},
+                           {"command", "operators"},
+                           {"tier", to_string(tier)},
+                           {"cost", cost}});
+    }
     for (const verification::Case* flow : verification::cases::all()) {
         for (const verification::Study& study : flow->studies) {
-            std::string summary = std::string(to_string(study.tier)) + " tier, " + study.cost + ":";
+            std::string summary = std::string(to_string(study.tier)) + " tier, " +
+                                  verification::duration_text(study.cost) + ":";
             for (const std::string& scheme : study.schemes) {
                 summary += " " + scheme;
             }
@@ -79,7 +90,8 @@ Entries studies() {
     }
     for (const verification::ExtremeStudy& study : verification::extreme_studies()) {
         entries.push_back({{"name", study.name},
-                           {"summary", std::string(to_string(study.tier)) + " tier, " + study.cost +
+                           {"summary", std::string(to_string(study.tier)) + " tier, " +
+                                           verification::duration_text(study.cost) +
                                            ": scenes at and past the edge of what the schemes are made for"},
                            {"source", "each row's own"},
                            {"command", "stability"},
@@ -87,22 +99,22 @@ Entries studies() {
                            {"cost", study.cost}});
     }
     for (const verification::ConditioningStudy& study : verification::conditioning_studies()) {
-        entries.push_back(
-            {{"name", study.name},
-             {"summary", std::string(to_string(study.tier)) + " tier, " + study.cost + ": " + study.summary},
-             {"source", "each check's own"},
-             {"command", "stability"},
-             {"tier", to_string(study.tier)},
-             {"cost", study.cost}});
+        entries.push_back({{"name", study.name},
+                           {"summary", std::string(to_string(study.tier)) + " tier, " +
+                                           verification::duration_text(study.cost) + ": " + study.summary},
+                           {"source", "each check's own"},
+                           {"command", "stability"},
+                           {"tier", to_string(study.tier)},
+                           {"cost", study.cost}});
     }
     for (const verification::StabilityStudy& study : verification::stability_studies()) {
-        entries.push_back(
-            {{"name", study.name},
-             {"summary", std::string(to_string(study.tier)) + " tier, " + study.cost + ": " + study.summary},
-             {"source", study.source},
-             {"command", "stability"},
-             {"tier", to_string(study.tier)},
-             {"cost", study.cost}});
+        entries.push_back({{"name", study.name},
+                           {"summary", std::string(to_string(study.tier)) + " tier, " +
+                                           verification::duration_text(study.cost) + ": " + study.summary},
+                           {"source", study.source},
+                           {"command", "stability"},
+                           {"tier", to_string(study.tier)},
+                           {"cost", study.cost}});
     }
     return entries;
 }

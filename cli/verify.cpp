@@ -43,7 +43,8 @@ LadderRequest request_of(const verification::Case& flow, const Study& study) {
                           std::string(to_string(study.tier)),
                           study.time_steps,
                           study.picture_at,
-                          study.name};
+                          study.name,
+                          study.round_off};
     for (const std::string& text : study.schemes) {
         request.schemes.push_back(verification::variant_of(text));
     }

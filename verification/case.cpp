@@ -3,10 +3,19 @@
 #include "sphvv/verification/cases.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace sphvv::verification {
 
 using solver::Key;
+
+std::string duration_text(double seconds) {
+    const bool hours = seconds >= 3600;
+    const bool minutes = !hours && seconds >= 120;
+    const double value = seconds / (hours ? 3600 : minutes ? 60 : 1);
+    const char* unit = hours ? " h" : minutes ? " min" : " s";
+    return solver::shortest(std::round(10 * value) / 10) + unit;
+}
 
 std::string_view to_string(Tier tier) {
     switch (tier) {

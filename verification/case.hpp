@@ -20,6 +20,9 @@ namespace sphvv::verification {
 enum class Tier { quick, nightly, full };
 std::string_view to_string(Tier tier);
 
+/// A run time as people say it: "50 s", "2.5 min", "3 h".
+std::string duration_text(double seconds);
+
 /// "The number set under `key` lies in [low, high]", or, with `word`, "the word set under `key` is this one".
 struct Condition {
     std::string key;
@@ -52,11 +55,17 @@ struct Study {
     std::vector<std::string> schemes; ///< or variants, as variant_of() reads them
     solver::Assignments settings;
     std::vector<int> ladder;
-    std::string cost; ///< run time on two cores, for the reader
+    double cost; ///< s: the budget, run time on two cores
     /// Not empty: a ladder in time, of these steps (s) at the one n of `ladder`.
     std::vector<double> time_steps{};
     /// Not 0: the rung at which the first run of every scheme keeps its particles for a picture (2-D).
     int picture_at = 0;
+    /// Relative change of an error norm that other round-off alone (another processor, other flags) can
+    /// cause: what `compare` calls equal to round-off. The usual one is what is left of the pressure solve's
+    /// tolerance, 1e-5, after one turnover of a vortex: particles at a stagnation point part as exp(2 pi U t
+    /// / L).
+    double round_off = usual_round_off;
+    static constexpr double usual_round_off = 0.01;
 };
 
 /// What the rungs of a ladder differ in: the particle spacing, and all that is tied to it, or the time step

@@ -137,6 +137,7 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
             {"tier", result.request.tier},
             {"axis", study.axis == Axis::space ? "h" : "dt"},
             {"settings", settings},
+            {"round_off", result.request.round_off},
             {"expected", expected},
             {"fit", fit},
             {"samples", samples}};
@@ -293,7 +294,8 @@ Tree result_document(const std::string& command, const Provenance& provenance, d
                                           {"published", c.claim->published},
                                           {"source", c.claim->source},
                                           {"ours", c.finding.ours},
-                                          {"agrees", c.finding.agrees}});
+                                          {"agrees", c.finding.agrees},
+                                          {"binding", c.claim->binding}});
         }
     }
     return document;

@@ -27,8 +27,8 @@ std::span<const ExtremeRow> extreme_rows() {
 }
 
 std::span<const ExtremeStudy> extreme_studies() {
-    static const std::vector<ExtremeStudy> studies{{"stability/extreme", Tier::quick, "20 s"},
-                                                   {"stability/extreme_long", Tier::nightly, "4 min"}};
+    static const std::vector<ExtremeStudy> studies{{"stability/extreme", Tier::quick, 20},
+                                                   {"stability/extreme_long", Tier::nightly, 240}};
     return studies;
 }
 

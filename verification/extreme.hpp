@@ -58,7 +58,7 @@ std::span<const ExtremeRow> extreme_rows();
 struct ExtremeStudy {
     std::string name;
     Tier tier;
-    std::string cost;
+    double cost; ///< s: the budget, run time on two cores
 };
 std::span<const ExtremeStudy> extreme_studies();
 

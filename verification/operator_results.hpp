@@ -1,10 +1,13 @@
 #pragma once
 
+#include "sphvv/verification/case.hpp"
 #include "sphvv/verification/kernel_checks.hpp"
 #include "sphvv/verification/operator_study.hpp"
 #include "sphvv/verification/published_operators.hpp"
 
 #include <nlohmann/json.hpp>
+
+#include <array>
 
 namespace sphvv::verification {
 
@@ -21,6 +24,13 @@ struct OperatorResults {
     std::vector<PublishedFigure> figures;
     std::vector<ConsistencyRow> consistency_sums;
 };
+
+/// s: the budget of all operators in a tier, run time on two cores.
+struct OperatorTier {
+    Tier tier;
+    double cost;
+};
+inline constexpr std::array operator_tiers{OperatorTier{Tier::quick, 60}, OperatorTier{Tier::nightly, 600}};
 
 /// Studies, properties and costs of the operators; with `everything`, also the kernels and the published
 /// figures.

@@ -395,7 +395,7 @@ struct Members {
     std::string_view names;
 };
 
-constexpr std::array<Members, 35> members{{
+constexpr std::array<Members, 36> members{{
     {"", "a text", "command"},
     {"", "an object", "provenance"},
     {"", "a list", "cases studies runs fronts"},
@@ -407,6 +407,7 @@ constexpr std::array<Members, 35> members{{
     {"cases[]", "a number", "dimension? reference_length?"},
     {"cases[]", "a list", "parameters?"},
     {"studies[]", "a text", "case group scheme field tier? axis?"},
+    {"studies[]", "a number", "round_off?"},
     {"studies[]", "an object", "settings? expected? fit"},
     {"studies[]", "a list", "samples"},
     {"studies[].expected", "a number", "low? high?"},

@@ -58,7 +58,7 @@ struct StabilityStudy {
     Tier tier;
     std::string summary;
     std::string source;
-    std::string cost;
+    double cost; ///< s: the budget, run time on two cores
     Limit limit;
     std::vector<std::string> schemes; ///< variants, kernel and h/dx among their settings
     MapAxes map = MapAxes::none;      ///< growth over two parameters, in place of limits

@@ -20,6 +20,7 @@ struct LadderRequest {
     std::vector<double> time_steps{}; ///< s; not empty: a ladder in time at the one n of `ladder`
     int picture_at = 0;               ///< the rung whose runs keep their particles; 0 for none
     std::string study{};              ///< name of the study, empty for a ladder given on the command line
+    double round_off = Study::usual_round_off; ///< of its error norms; see Study
 };
 
 /// One rung of one scheme: the seeds' runs put together.

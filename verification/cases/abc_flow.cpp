@@ -47,13 +47,13 @@ const Case& abc_flow() {
                  .schemes = {"wcsph", "isph_dfs", "isph_mls"},
                  .settings = {{"re", "100"}},
                  .ladder = {8, 11, 16, 23, 32},
-                 .cost = "35 s"},
+                 .cost = 35},
                 {.name = "abc_flow/fine",
                  .tier = Tier::nightly,
                  .schemes = {"wcsph", "isph_dfs", "isph_mls"},
                  .settings = {{"re", "100"}},
-                 .ladder = {16, 23, 32, 45, 64},
-                 .cost = "9 min"},
+                 .ladder = {12, 17, 24, 34, 48},
+                 .cost = 230},
             },
     };
     return flow;

@@ -56,7 +56,7 @@ TEST(ConditioningStudies, GoOnAfterAMatrixThatFails) {
     const ConditioningStudy study{.name = "synthetic",
                                   .tier = Tier::quick,
                                   .summary = "",
-                                  .cost = "",
+                                  .cost = 1,
                                   .ladder = {12},
                                   .disordered = {12},
                                   .side = 12,
