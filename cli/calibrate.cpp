@@ -27,12 +27,16 @@ nlohmann::ordered_json as_json(const std::optional<double>& value) {
     return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json as_json(const Calibration& result) {
-    nlohmann::ordered_json tree{{"dx", result.dx},
+nlohmann::ordered_json as_json(const CalibrationRequest& request, const Calibration& result) {
+    nlohmann::ordered_json tree{{"scheme", request.scheme.label()},
+                                {"depth", request.depth},
+                                {"duration", request.duration},
+                                {"dx", result.dx},
                                 {"dt", result.dt},
                                 {"usable", as_json(result.usable)},
                                 {"lowest", as_json(result.lowest)},
-                                {"recommended", as_json(result.recommended)}};
+                                {"recommended", as_json(result.recommended)},
+                                {"passes", result.usable.has_value()}};
     for (const verification::CalibrationRun& run : result.runs) {
         tree["runs"].push_back({{"alpha", run.alpha},
                                 {"mean", run.mean},
@@ -45,11 +49,12 @@ nlohmann::ordered_json as_json(const Calibration& result) {
 }
 
 nlohmann::ordered_json document_of(const std::string& command_line, double seconds,
+                                   const CalibrationRequest& request,
                                    const std::vector<Calibration>& results) {
     auto document = result_document(command_line, verification::current_provenance(), seconds, {});
     document["kind"] = "calibration";
     for (const Calibration& result : results) {
-        document["calibration"]["results"].push_back(as_json(result));
+        document["calibration"]["results"].push_back(as_json(request, result));
     }
     if (const auto law = calibration_law(results)) {
         document["calibration"]["law"] = {{"constant", std::exp(law->log_constant)},
@@ -110,7 +115,7 @@ int calibrate(const Options& options, const std::string& command_line) {
         std::cout << markdown(request, results) << std::flush;
     }
     if (!options.common.json.empty()) {
-        write_text(options.common.json, document_of(command_line, seconds, results).dump(1) + "\n");
+        write_text(options.common.json, document_of(command_line, seconds, request, results).dump(1) + "\n");
     }
     return all_usable ? 0 : 1;
 }

@@ -14,7 +14,16 @@ namespace {
 using verification::Comparison;
 using verification::ResultTree;
 
-ResultTree tree_of(const Comparison& comparison) {
+/// Which of the two files it was, as far as the file tells: a report must not show the changes of another
+/// run.
+ResultTree side(const std::string& path, const ResultTree& tree) {
+    const ResultTree provenance = tree.value("provenance", ResultTree::object());
+    return {{"file", std::filesystem::path(path).filename().string()},
+            {"revision", provenance.value("revision", "")},
+            {"started", provenance.value("started", "")}};
+}
+
+ResultTree tree_of(const Comparison& comparison, const ResultTree& baseline, const ResultTree& current) {
     ResultTree rows = ResultTree::array();
     for (const verification::Difference& d : comparison.differences) {
         rows.push_back({{"change", to_string(d.change)},
@@ -25,27 +34,66 @@ ResultTree tree_of(const Comparison& comparison) {
                         {"current", d.current},
                         {"factor", d.factor}});
     }
-    return {{"compared", comparison.compared},
+    return {{"format", "sphvv-comparison"},
+            {"format_version", 1},
+            {"baseline", baseline},
+            {"current", current},
+            {"compared", comparison.compared},
             {"bitwise_equal", comparison.bitwise},
             {"fails", comparison.fails()},
             {"differences", rows}};
 }
 
-int compare_files(const std::string& baseline, const std::string& current, const Common& common) {
-    const Comparison comparison = verification::compare(verification::read_comparable(baseline),
-                                                        verification::read_comparable(current));
-    if (common.json != "-") {
+bool is_baseline(const ResultTree& tree) {
+    return tree.at("format") == "sphvv-baseline";
+}
+
+/// Several result files of one build as one. Throws UserError, in one sentence, for a baseline among them:
+/// then the arguments were swapped.
+ResultTree read_current(const std::vector<std::string>& paths) {
+    std::vector<ResultTree> trees;
+    for (const std::string& path : paths) {
+        trees.push_back(verification::read_comparable(path));
+        if (is_baseline(trees.back())) {
+            throw UserError("'" + path +
+                            "' is a baseline and stands where a result file is expected; the baseline comes "
+                            "first");
+        }
+    }
+    return verification::merged(trees);
+}
+
+struct CompareOptions {
+    Common common;
+    std::string baseline;
+    std::vector<std::string> current;
+    std::string summary;
+};
+
+int compare_files(const CompareOptions& options) {
+    check_writable(options.summary, "--summary");
+    check_writable(options.common.json, "--json");
+    const ResultTree baseline = verification::read_comparable(options.baseline);
+    const ResultTree current = read_current(options.current);
+    const Comparison comparison = verification::compare(baseline, current);
+    if (options.common.json != "-" && options.summary != "-") {
         std::cout << markdown(comparison);
     }
-    if (!common.json.empty()) {
-        write_text(common.json, tree_of(comparison).dump(1) + "\n");
+    if (!options.summary.empty()) {
+        write_text(options.summary, summary(comparison, baseline, current));
+    }
+    if (!options.common.json.empty()) {
+        write_text(options.common.json, tree_of(comparison, side(options.baseline, baseline),
+                                                side(options.current.front(), current))
+                                                .dump(1) +
+                                            "\n");
     }
     return comparison.fails() ? 1 : 0;
 }
 
 struct BlessOptions {
     Common common;
-    std::string current;
+    std::vector<std::string> current;
     std::string baseline;
     bool allow_missing = false;
     bool allow_dirty = false;
@@ -58,7 +106,7 @@ std::optional<ResultTree> old_baseline(const std::string& path) {
         return {};
     }
     ResultTree tree = verification::read_comparable(path);
-    if (tree.at("format") != "sphvv-baseline") {
+    if (!is_baseline(tree)) {
         throw UserError("--baseline '" + path +
                         "' is a result file and not a baseline, so it is not overwritten");
     }
@@ -85,7 +133,7 @@ int refuse_to_bless(const std::string& why) {
 }
 
 int bless(const BlessOptions& options) {
-    const ResultTree results = verification::read_comparable(options.current);
+    const ResultTree results = read_current(options.current);
     const std::optional<ResultTree> old = old_baseline(options.baseline);
     ResultTree reduced;
     try {
@@ -97,7 +145,10 @@ int bless(const BlessOptions& options) {
         const Comparison comparison = verification::compare(*old, reduced);
         std::cout << "against the old baseline:\n" << markdown(comparison);
         if (!options.common.json.empty()) {
-            write_text(options.common.json, tree_of(comparison).dump(1) + "\n");
+            write_text(options.common.json, tree_of(comparison, side(options.baseline, *old),
+                                                    side(options.current.front(), results))
+                                                    .dump(1) +
+                                                "\n");
         }
         const std::string missing = missing_entries(comparison);
         if (!missing.empty() && !options.allow_missing) {
@@ -111,30 +162,31 @@ int bless(const BlessOptions& options) {
 } // namespace
 
 void add_compare(CLI::App& app, Act& act) {
-    struct Options {
-        Common common;
-        std::string baseline;
-        std::string current;
-    };
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<CompareOptions>();
     CLI::App* command =
         app.add_subcommand("compare", "regression gate: results against a baseline or other results");
     command->add_option("baseline", options->baseline, "baseline (JSON) or result file")->required();
-    command->add_option("current", options->current, "result file")->required();
+    command->add_option("current", options->current, "result files of one build, taken together")
+        ->required()
+        ->type_name("FILE");
+    command
+        ->add_option("--summary", options->summary,
+                     "Markdown of at most 40 lines for a pull request, in place of the table with -")
+        ->type_name("FILE.md");
     add_common(*command, options->common);
     command->footer(
         "Example: sphvv operators --out now.h5; sphvv compare verification/baselines/operators.json now.h5\n"
         "Exit status: 0 equal, or equal to round-off; 1 an error level, order, demand, verdict or work count "
         "changed, or something is missing; 2 wrong use.");
-    command->callback([options, &act] {
-        act = [options] { return compare_files(options->baseline, options->current, options->common); };
-    });
+    command->callback([options, &act] { act = [options] { return compare_files(*options); }; });
 }
 
 void add_bless(CLI::App& app, Act& act) {
     const auto options = std::make_shared<BlessOptions>();
     CLI::App* command = app.add_subcommand("bless", "makes a result the new baseline, if all of it passes");
-    command->add_option("current", options->current, "result file")->required();
+    command->add_option("current", options->current, "result files of one build, taken together")
+        ->required()
+        ->type_name("FILE");
     command->add_option("--baseline", options->baseline, "baseline to write")
         ->required()
         ->type_name("FILE.json");

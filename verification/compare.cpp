@@ -1,6 +1,7 @@
 #include "sphvv/verification/compare.hpp"
 
 #include "sphvv/solver/error.hpp"
+#include "sphvv/verification/case.hpp"
 #include "sphvv/verification/claims.hpp"
 #include "sphvv/verification/markdown_table.hpp"
 
@@ -15,7 +16,8 @@ namespace sphvv::verification {
 namespace {
 
 constexpr double round_off_of_operators = 1e-6;
-constexpr double round_off_of_schemes = 1e-2;
+constexpr double round_off_of_schemes = Study::usual_round_off;
+constexpr double no_error = 1e-11; // relative norms below are round-off themselves
 constexpr double work_tolerance = 0.01;
 constexpr double least_order_change = 0.05;
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
@@ -49,6 +51,13 @@ const std::vector<CheckList>& check_lists() {
         {"extreme_rows", {"scheme", "name"}, "passes", "error", round_off_of_schemes},
         {"conditioning_rows", {"name", "study"}, "converged", "iterations_two_level"},
         {"conditioning_checks", {"subject", "name", "study"}, "passes", "value", round_off_of_schemes},
+        // The edge of the usable range, found by bisection.
+        {"calibration",
+         {"scheme", "depth", "duration", "dx", "dt"},
+         "passes",
+         "usable",
+         round_off_of_schemes},
+        {"claims", {"id", "group", "text"}, "agrees"},
     };
     return lists;
 }
@@ -123,7 +132,7 @@ struct Contents {
         std::string subject, where;
         const ResultTree* tree;
         bool of_operator;
-        std::map<long, const ResultTree*> rungs;
+        std::map<std::string, const ResultTree*> rungs;
     };
     struct Check {
         std::string subject, where;
@@ -136,7 +145,8 @@ struct Contents {
 
 /// The entries of a list, which may be missing. Throws UserError for anything else.
 const ResultTree& entries_of(const ResultTree& tree, const char* list) {
-    const ResultTree& entries = member(tree, list);
+    const ResultTree& named = member(tree, list);
+    const ResultTree& entries = named.is_object() ? member(named, "results") : named; // calibration
     if (!entries.is_null() && !entries.is_array()) {
         throw UserError("not a complete result or baseline: " + std::string(list) + " is not a list");
     }
@@ -164,6 +174,17 @@ std::string key_of(std::string_view list, const std::string& subject, const std:
                     ") has no 'n'");
 }
 
+/// "n = 40", and in time "n = 12, dt = 0.004".
+std::string rung_of(const ResultTree& study, const ResultTree& sample) {
+    const std::string n = "n = " + std::to_string(member(sample, "n").get<long>());
+    return member(study, "axis") == "dt" ? n + ", dt = " + number(number_of(sample, "dt"), "%.6g") : n;
+}
+
+/// Of the claims of the literature only those are checks that are goals of the project.
+bool is_check(const CheckList& list, const ResultTree& entry) {
+    return std::string_view(list.name) != "claims" || member(entry, "binding") == true;
+}
+
 void collect_studies(const ResultTree& tree, const char* list, const std::vector<const char*>& identity,
                      Contents& contents) {
     for (const ResultTree& study : entries_of(tree, list)) {
@@ -173,7 +194,7 @@ void collect_studies(const ResultTree& tree, const char* list, const std::vector
             if (!member(sample, "n").is_number_integer()) {
                 refuse_rung(subject, where);
             }
-            entry.rungs[member(sample, "n").get<long>()] = &sample;
+            entry.rungs[free_key(entry.rungs, rung_of(study, sample))] = &sample;
         }
         contents.studies.emplace(free_key(contents.studies, key_of("", subject, where)), std::move(entry));
     }
@@ -185,6 +206,9 @@ Contents contents_of(const ResultTree& tree) {
     collect_studies(tree, "studies", scheme_identity, contents);
     for (const CheckList& list : check_lists()) {
         for (const ResultTree& check : entries_of(tree, list.name)) {
+            if (!is_check(list, check)) {
+                continue;
+            }
             const auto [subject, where] = identity_of(check, list.identity);
             contents.checks.emplace(free_key(contents.checks, key_of(list.name, subject, where)),
                                     Contents::Check{subject, where, &check, &list});
@@ -249,15 +273,51 @@ private:
     }
 
     /// One number; `otherwise` is the change if it is more than `tolerance`, or if one side has none.
-    void compare_number(const Contents::Study& study, long n, const char* name, double before, double after,
-                        double tolerance, Change otherwise) {
+    void compare_number(const Contents::Study& study, const std::string& rung, const char* name,
+                        double before, double after, double tolerance, Change otherwise) {
         if (settled(before, after)) {
             return;
         }
         const double factor = after / before;
-        const bool close = std::abs(after - before) <= tolerance * std::abs(before);
-        note(close ? Change::round_off : otherwise, study.subject, study.where + ", n = " + std::to_string(n),
-             name, text_of(before, "%.4g"), text_of(after, "%.4g"), factor);
+        const bool close = std::abs(after - before) <= tolerance * std::abs(before) ||
+                           (otherwise == Change::error_level && !study.of_operator &&
+                            std::abs(before) <= no_error && std::abs(after) <= no_error);
+        note(close ? Change::round_off : otherwise, study.subject, study.where + ", " + rung, name,
+             text_of(before, "%.4g"), text_of(after, "%.4g"), factor);
+    }
+
+    /// Errors and work of one rung.
+    void compare_rung(const Contents::Study& study, const std::string& rung, const ResultTree& before,
+                      const ResultTree& after, double round_off) {
+        const std::string where = study.where + ", " + rung;
+        const bool ended_before = member(before, "survived") == false; // all that a baseline says of it
+        const bool ended_early = member(after, "survived") == false;
+        if (ended_before || ended_early) {
+            compare_word(Change::verdict, study.subject, where, "survived", ended_before ? "no" : "yes",
+                         ended_early ? "no" : "yes");
+        }
+        for (const char* name : error_names) {
+            compare_number(study, rung, name, number_of(before, name), number_of(after, name), round_off,
+                           Change::error_level);
+        }
+        // All fields of a run do the same work; a baseline keeps it once.
+        const bool kept = std::ranges::any_of(
+            work_names, [&](const char* name) { return !std::isnan(number_of(before, name)); });
+        for (const char* name : work_names) {
+            if (kept && !ended_before) {
+                compare_number(study, rung, name, number_of(before, name), number_of(after, name),
+                               work_tolerance, Change::work);
+            }
+        }
+        compare_seconds(study, rung, number_of(before, "seconds"), number_of(after, "seconds"));
+    }
+
+    /// A baseline that is older than a member has none.
+    void compare_round_off(const Contents::Study& study, const ResultTree& before, const ResultTree& after) {
+        if (!member(before, "round_off").is_null()) {
+            compare_word(Change::demand, study.subject, study.where, "round_off",
+                         text_of(member(before, "round_off")), text_of(member(after, "round_off")));
+        }
     }
 
     void compare_word(Change change, const std::string& subject, const std::string& where,
@@ -270,31 +330,28 @@ private:
     void compare_study(const Contents::Study& before, const Contents::Study& after) {
         compare_word(Change::demand, before.subject, before.where, "expected order", band_of(*before.tree),
                      band_of(*after.tree));
+        compare_word(Change::demand, before.subject, before.where, "expected fate",
+                     text_of(member(member(*before.tree, "expected"), "fate")),
+                     text_of(member(member(*after.tree, "expected"), "fate")));
+        compare_round_off(before, *before.tree, *after.tree);
         compare_word(Change::verdict, before.subject, before.where, "verdict", verdict_of(*before.tree),
                      verdict_of(*after.tree));
         compare_order(before, after);
-        const double round_off = before.of_operator ? round_off_of_operators : round_off_of_schemes;
-        for (const auto& [n, rung] : before.rungs) {
-            const auto found = after.rungs.find(n);
+        const double declared = number_of(*before.tree, "round_off");
+        const double round_off = before.of_operator     ? round_off_of_operators
+                                 : std::isnan(declared) ? round_off_of_schemes
+                                                        : declared;
+        for (const auto& [name, rung] : before.rungs) {
+            const auto found = after.rungs.find(name);
             if (found == after.rungs.end()) {
-                note(Change::missing, before.subject, before.where, "n = " + std::to_string(n), "there",
-                     "not there");
+                note(Change::missing, before.subject, before.where, name, "there", "not there");
                 continue;
             }
-            for (const char* name : error_names) {
-                compare_number(before, n, name, number_of(*rung, name), number_of(*found->second, name),
-                               round_off, Change::error_level);
-            }
-            for (const char* name : work_names) {
-                compare_number(before, n, name, number_of(*rung, name), number_of(*found->second, name),
-                               work_tolerance, Change::work);
-            }
-            compare_seconds(before, n, number_of(*rung, "seconds"), number_of(*found->second, "seconds"));
+            compare_rung(before, name, *rung, *found->second, round_off);
         }
-        for (const auto& [n, rung] : after.rungs) {
-            if (!before.rungs.contains(n)) {
-                note(Change::added, after.subject, after.where, "n = " + std::to_string(n), "not there",
-                     "there");
+        for (const auto& [name, rung] : after.rungs) {
+            if (!before.rungs.contains(name)) {
+                note(Change::added, after.subject, after.where, name, "not there", "there");
             }
         }
     }
@@ -316,11 +373,16 @@ private:
              text_of(order_before, "%.3f"), text_of(order_after, "%.3f"));
     }
 
-    void compare_seconds(const Contents::Study& study, long n, double before, double after) {
+    void compare_seconds(const Contents::Study& study, const std::string& rung, double before, double after) {
         constexpr double noticeable = 1.5;
+        constexpr double least = 0.1; // s: below, the clock tells of other work
         const double factor = after / before;
-        if (factor > noticeable || factor < 1 / noticeable) {
-            note(Change::run_time, study.subject, study.where + ", n = " + std::to_string(n), "seconds",
+        if (!std::isnan(factor)) {
+            result_.seconds_before += before;
+            result_.seconds_after += after;
+        }
+        if (std::max(before, after) >= least && (factor > noticeable || factor < 1 / noticeable)) {
+            note(Change::run_time, study.subject, study.where + ", " + rung, "seconds",
                  number(before, "%.3g"), number(after, "%.3g"), factor);
         }
     }
@@ -394,16 +456,56 @@ ResultTree picked(const ResultTree& tree, const std::vector<const char*>& names)
 
 ResultTree reduced_study(const ResultTree& study, const std::vector<const char*>& identity) {
     ResultTree result = picked(study, identity);
-    result["expected"] = picked(member(study, "expected"), {"low", "high"});
+    result["expected"] = picked(member(study, "expected"), {"low", "high", "fate"});
+    if (member(study, "axis") == "dt") {
+        result["axis"] = "dt";
+    }
+    if (!member(study, "round_off").is_null()) {
+        result["round_off"] = member(study, "round_off");
+    }
     result["fit"] = picked(member(study, "fit"), {"order", "ci95", "verdict", "waiver"});
     result["samples"] = ResultTree::array();
     std::vector<const char*> kept{"n"};
+    if (result.contains("axis")) {
+        kept.push_back("dt");
+    }
     kept.insert(kept.end(), error_names.begin(), error_names.end());
     kept.insert(kept.end(), work_names.begin(), work_names.end());
     for (const ResultTree& sample : member(study, "samples")) {
         result["samples"].push_back(picked(sample, kept));
+        if (member(sample, "survived") == false) {
+            result["samples"].back()["survived"] = false;
+        }
     }
     return result;
+}
+
+/// Takes the work out of `study` where an entry before it is another field of the same runs.
+void keep_work_once(const ResultTree& entries, ResultTree& study) {
+    const auto same_runs = [&](const ResultTree& other) {
+        return std::ranges::all_of(
+                   std::array{"scheme", "group", "tier"},
+                   [&](const char* name) { return member(other, name) == member(study, name); }) &&
+               other.at("samples").size() == study.at("samples").size();
+    };
+    if (!study.contains("field") || std::ranges::none_of(entries, same_runs)) {
+        return;
+    }
+    for (ResultTree& sample : study["samples"]) {
+        for (const char* name : work_names) {
+            sample.erase(name);
+        }
+    }
+}
+
+/// A run that lost what its scheme claims to conserve.
+void refuse_unless_kept(const ResultTree& run) {
+    const ResultTree& lost = member(member(run, "budget"), "lost");
+    if (member(run, "survived") == true && lost.is_string() && !lost.get<std::string>().empty()) {
+        throw UserError(
+            "no baseline is made of a result that does not pass: " + text_of(member(run, "scheme")) + " (" +
+            text_of(member(run, "group")) + ") lost " + lost.get<std::string>());
+    }
 }
 
 void refuse_unless_passing(const ResultTree& study, const std::vector<const char*>& identity) {
@@ -463,8 +565,8 @@ Comparison compare(const ResultTree& baseline, const ResultTree& current) {
     return Comparer().run(contents_of(baseline), contents_of(current));
 }
 
-std::string markdown(const Comparison& comparison) {
-    constexpr std::size_t most_rows = 34; // of 40 lines, with headings and counts
+std::string markdown(const Comparison& comparison, std::size_t most_lines) {
+    const std::size_t most_rows = most_lines - 6; // without headings, counts and what is left out
     struct Group {
         const Difference* worst;
         std::size_t count;
@@ -473,7 +575,7 @@ std::string markdown(const Comparison& comparison) {
     std::map<Change, std::size_t> counts;
     for (const Difference& d : comparison.differences) {
         ++counts[d.change];
-        if (d.change == Change::round_off) {
+        if (d.change == Change::round_off || (comparison.fails() && d.change < Change::work)) {
             continue;
         }
         const auto [group, fresh] =
@@ -512,6 +614,53 @@ std::string markdown(const Comparison& comparison) {
     return text + (comparison.fails() ? "; FAIL\n" : "; PASS\n");
 }
 
+std::string summary(const Comparison& comparison, const ResultTree& baseline, const ResultTree& current) {
+    const auto build = [](const ResultTree& tree) {
+        const ResultTree& provenance = member(tree, "provenance");
+        return text_of(member(provenance, "revision")).substr(0, 12) +
+               (member(provenance, "tree_clean") == false ? " with changes" : "") + " (" +
+               text_of(member(provenance, "compiler")) + ", " + text_of(member(provenance, "cpu")) + ")";
+    };
+    constexpr std::size_t lines_around = 8;
+    std::string text = "### Regression gate: " + std::string(comparison.fails() ? "FAIL" : "PASS") + "\n\n" +
+                       "baseline " + build(baseline) + "; current " + build(current) + "\n\n" +
+                       markdown(comparison, 40 - lines_around);
+    if (comparison.seconds_before > 0) {
+        text += "\nrun time of what both time: " + number(comparison.seconds_before, "%.3g") + " s, now " +
+                number(comparison.seconds_after, "%.3g") + " s (informational)\n";
+    }
+    return text;
+}
+
+ResultTree merged(std::span<const ResultTree> results) {
+    ResultTree all = results.front();
+    for (const ResultTree& result : results.subspan(1)) {
+        for (const char* name : {"revision", "tree_clean", "compiler", "flags"}) {
+            const ResultTree& first = member(member(all, "provenance"), name);
+            const ResultTree& other = member(member(result, "provenance"), name);
+            if (first != other) {
+                throw UserError("the results are of different builds: " + std::string(name) + " is " +
+                                text_of(first) + " in one and " + text_of(other) + " in another");
+            }
+        }
+        for (const auto& [name, value] : result.items()) {
+            if (value.is_array()) {
+                ResultTree& list = all[name];
+                for (const ResultTree& entry : value) {
+                    list.push_back(entry);
+                }
+            } else if (!all.contains(name)) {
+                all[name] = value;
+            } else if (name == "calibration") {
+                for (const ResultTree& entry : member(value, "results")) {
+                    all[name]["results"].push_back(entry);
+                }
+            }
+        }
+    }
+    return all;
+}
+
 ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty) {
     if (!allow_dirty && member(member(result, "provenance"), "tree_clean") != true) {
         throw UserError("no baseline is made of a result whose source was not committed when it was built, "
@@ -525,15 +674,23 @@ ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty) {
         baseline[list] = ResultTree::array();
         for (const ResultTree& study : member(result, list)) {
             refuse_unless_passing(study, *identity);
-            baseline[list].push_back(reduced_study(study, *identity));
+            ResultTree reduced = reduced_study(study, *identity);
+            keep_work_once(baseline[list], reduced);
+            baseline[list].push_back(std::move(reduced));
         }
+    }
+    for (const ResultTree& run : member(result, "runs")) {
+        refuse_unless_kept(run);
     }
     for (const CheckList& list : check_lists()) {
         baseline[list.name] = ResultTree::array();
         std::vector<const char*> kept = list.identity;
         kept.insert(kept.end(), demand_names.begin(), demand_names.end());
-        kept.insert(kept.end(), {list.value, "waiver", list.passes});
-        for (const ResultTree& check : member(result, list.name)) {
+        kept.insert(kept.end(), {list.value, "waiver", "binding", list.passes});
+        for (const ResultTree& check : entries_of(result, list.name)) {
+            if (!is_check(list, check)) {
+                continue;
+            }
             refuse_unless_holding(check, list);
             baseline[list.name].push_back(picked(check, kept));
         }

@@ -2,6 +2,7 @@
 
 #include "sphvv/verification/results.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct Comparison {
     std::vector<Difference> differences; ///< without the bitwise equal ones
     std::size_t compared = 0;            ///< numbers and words held against each other; not what neither has
     std::size_t bitwise = 0;             ///< of those, the bitwise equal ones; seconds and costs take no part
+    double seconds_before = 0;           ///< of the rungs that both time
+    double seconds_after = 0;
 
     bool fails() const;
 };
@@ -46,26 +49,36 @@ struct Comparison {
 ResultTree read_comparable(const std::filesystem::path& path);
 
 /// Holds results against a baseline; both may be full results (of `sphvv operators` or `sphvv verify`) or
-/// reduced ones (reduced_for_baseline). Rungs are found by study and n, whatever their order in the file.
+/// reduced ones (reduced_for_baseline). Rungs are found by study, n and, in time, dt, whatever their order in
+/// the file.
 ///
-/// Equal to round-off: 1e-6 for operators (-O3 native against -O1: 3e-8), whose sums have no memory; 1e-2 for
-/// schemes, whose pressure solve ends at 1e-5 and whose particles amplify it (7e-4 between those two). Values
-/// of a property that are both within its bound are equal to round-off, and so are those of a kernel check
-/// that differ by no more than the baseline's tolerance of it.
+/// Equal to round-off: 1e-6 for operators (-O3 native against -O1: 3e-8), whose sums have no memory; for a
+/// study of schemes what the baseline's record of it says (Study::round_off), and any norm below 1e-11, which
+/// is eps times the square of 200 particles a side. Values of a property that are both within its bound are
+/// equal to round-off, and so are those of a kernel check that differ by no more than the baseline's
+/// tolerance of it. How many steps a run takes that ends early is not compared, only that it does: the last
+/// ones are chaotic.
 ///
 /// Throws UserError if the two have no study in common, or if an entry lacks what identifies it.
 Comparison compare(const ResultTree& baseline, const ResultTree& current);
 
 /// The smallest table that shows why: one row for each subject and kind of change with the worst of them, at
-/// most 40 lines, and a line of counts.
-std::string markdown(const Comparison& comparison);
+/// most `most_lines` with the line of counts. Where the gate fails only the kinds that it fails on have rows.
+std::string markdown(const Comparison& comparison, std::size_t most_lines = 40);
+
+/// The same as a text for a pull request, at most 40 lines: verdict and builds above the table, run times
+/// below.
+std::string summary(const Comparison& comparison, const ResultTree& baseline, const ResultTree& current);
+
+/// Results that several calls of one build have written, as one. Throws UserError if the builds differ.
+ResultTree merged(std::span<const ResultTree> results);
 
 /// What a baseline keeps of a result: identities, error norms, orders, demands, verdicts, work; no seconds,
 /// no texts. Throws UserError, naming the first one, if the result has a verdict that failed or is
-/// inconclusive without a waiver (a run that ended early unexpectedly is a FAIL of each of its studies), or a
-/// property, kernel check or figure that is not as it must be: a baseline that blesses a wrong answer is
-/// worse than none. So is one that nobody can reproduce: a result of a tree with uncommitted changes is
-/// refused unless `allow_dirty`.
+/// inconclusive without a waiver (a run that ended early unexpectedly is a FAIL of each of its studies), a
+/// run that lost what its scheme claims to conserve, or a property, kernel check, figure or goal that is not
+/// as it must be: a baseline that blesses a wrong answer is worse than none. So is one that nobody can
+/// reproduce: a result of a tree with uncommitted changes is refused unless `allow_dirty`.
 ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty = false);
 
 /// JSON with one line a rung or check, so that a reviewer can read the difference of two baselines.

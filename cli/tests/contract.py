@@ -172,6 +172,17 @@ class Contract(unittest.TestCase):
         self.assertEqual(sphvv("bless", str(out), *bless).returncode, 0)
         blessed = baseline.read_text()
         self.assertTrue(sphvv("compare", str(baseline), str(out)).stdout.startswith("bitwise equal"))
+        summary = self.folder / "summary.md"
+        result = sphvv("compare", str(baseline), str(out), "--summary", str(summary))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("Regression gate: PASS", summary.read_text())
+        self.assertLessEqual(len(summary.read_text().splitlines()), 40)
+        to_the_screen = sphvv("compare", str(baseline), str(out), "--summary", "-")
+        self.assertEqual(to_the_screen.stdout, summary.read_text())
+        self.assert_refused(sphvv("compare", str(out), str(baseline)), "baseline.json", "baseline comes first")
+        self.assert_refused(sphvv("compare", str(baseline), str(out), "--summary", str(self.folder / "no" / "summary.md")), "--summary")
+        twice = sphvv("compare", str(baseline), str(out), str(twin))  # a study that stands in two files
+        self.assertIn("new", twice.stdout)
         again = sphvv("bless", str(twin), *bless)  # either form makes the same baseline
         self.assertIn("bitwise equal", again.stdout)
         self.assertEqual(baseline.read_text(), blessed)
@@ -245,6 +256,11 @@ class Contract(unittest.TestCase):
         self.assertEqual([run["alpha"] for run in found["runs"][:2]], [0, 1])
         self.assertEqual(result.returncode, 0 if found["usable"] else 1)
         self.assertEqual(len(tree["calibration"]["published"]), 3)
+        self.assertTrue(sphvv("compare", str(out), str(out)).stdout.startswith("bitwise equal"))
+        found["usable"] = 1e-6
+        other = self.folder / "other.json"
+        other.write_text(json.dumps(tree))
+        self.assertEqual(sphvv("compare", str(out), str(other)).returncode, 1)
         self.assertIn("Example: sphvv calibrate", sphvv("calibrate", "--help").stdout)
         self.assert_refused(sphvv("calibrate", "--scheme", "isph_dfs"), "isph_dfs", "relaxation")
         self.assert_refused(sphvv("calibrate", "--dx", "0.03"), "0.03", "--depth")

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 namespace sphvv::verification {
 namespace {
@@ -18,7 +19,8 @@ ResultTree sample(int n, double error) {
             {"linf", 2 * error},
             {"steps", 10},
             {"pair_evaluations", 1000. * n},
-            {"seconds", 0.1}};
+            {"seconds", 0.1},
+            {"survived", true}};
 }
 
 ResultTree operator_study(const std::string& name, const std::string& arrangement) {
@@ -212,6 +214,171 @@ TEST(Compare, SchemesHaveTheirOwnRoundOff) {
     };
     EXPECT_FALSE(scaled(1.005).fails());
     EXPECT_EQ(count(scaled(1.02), Change::error_level), 1);
+}
+
+/// A ladder in time: every rung has the same n.
+ResultTree in_time() {
+    ResultTree tree = result();
+    ResultTree& study = tree["studies"][0];
+    study["axis"] = "dt";
+    double dt = 0.008;
+    for (ResultTree& row : study["samples"]) {
+        row["n"] = 12;
+        row["dt"] = dt;
+        row["l2"] = dt * dt;
+        dt /= 2;
+    }
+    return tree;
+}
+
+TEST(Compare, TheRungsOfALadderInTimeAreTold) {
+    const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(in_time())));
+    EXPECT_EQ(baseline["studies"][0]["samples"].size(), 4);
+    EXPECT_TRUE(compare(baseline, in_time()).differences.empty());
+    for (std::size_t rung = 0; rung < 4; ++rung) {
+        ResultTree now = in_time();
+        now["studies"][0]["samples"][rung]["l2"] = 1.0;
+        const Comparison comparison = compare(baseline, now);
+        ASSERT_EQ(count(comparison, Change::error_level), 1) << rung;
+        EXPECT_NE(comparison.differences[0].where.find("dt = "), std::string::npos);
+    }
+    ResultTree fewer = in_time();
+    fewer["studies"][0]["samples"].erase(2);
+    EXPECT_EQ(count(compare(baseline, fewer), Change::missing), 1);
+}
+
+TEST(Compare, AStudySaysWhatItsRoundOffIs) {
+    const auto compared = [](double declared, double factor) {
+        ResultTree before = result();
+        before["studies"][0]["round_off"] = declared;
+        ResultTree now = before;
+        now["studies"][0]["samples"][1]["l1"] = factor * now["studies"][0]["samples"][1]["l1"].get<double>();
+        return compare(ResultTree::parse(baseline_text(reduced_for_baseline(before))), now);
+    };
+    EXPECT_FALSE(compared(0.1, 1.05).fails());
+    EXPECT_TRUE(compared(0.1, 1.2).fails());
+    EXPECT_TRUE(compared(1e-6, 1.0001).fails());
+    // What is loosened today is a weaker demand and excuses nothing.
+    ResultTree before = result();
+    before["studies"][0]["round_off"] = 0.01;
+    ResultTree now = before;
+    now["studies"][0]["round_off"] = 0.5;
+    now["studies"][0]["samples"][1]["l1"] = 1.0;
+    EXPECT_EQ(count(compare(before, now), Change::demand), 1);
+    EXPECT_EQ(count(compare(before, now), Change::error_level), 1);
+}
+
+TEST(Compare, WhatIsZeroToRoundOffHasNoDigits) {
+    ResultTree before = result();
+    before["studies"][0]["samples"][0]["linf"] = 3e-15;
+    ResultTree now = before;
+    now["studies"][0]["samples"][0]["linf"] = 5e-14;
+    EXPECT_EQ(count(compare(before, now), Change::round_off), 1);
+    EXPECT_FALSE(compare(before, now).fails());
+    now["studies"][0]["samples"][0]["linf"] = 1e-9;
+    EXPECT_TRUE(compare(before, now).fails());
+}
+
+TEST(Compare, ARunThatEndsEarlyIsHeldToItsFateAndNotToItsSteps) {
+    ResultTree before = result();
+    before["studies"][0]["expected"]["fate"] = "ends_early";
+    for (const char* norm : {"l1", "l2", "linf"}) {
+        before["studies"][0]["samples"][3][norm] = nullptr;
+    }
+    before["studies"][0]["samples"][3]["survived"] = false;
+    const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(before)));
+    ResultTree later = before;
+    later["studies"][0]["samples"][3]["steps"] = 99;
+    EXPECT_TRUE(compare(baseline, later).differences.empty());
+    ResultTree survives = before;
+    survives["studies"][0]["samples"][3]["survived"] = true;
+    EXPECT_EQ(count(compare(baseline, survives), Change::verdict), 1);
+    ResultTree undemanded = before;
+    undemanded["studies"][0]["expected"].erase("fate");
+    EXPECT_EQ(count(compare(baseline, undemanded), Change::demand), 1);
+}
+
+TEST(Compare, WorkIsKeptOnceForAllFieldsOfARun) {
+    ResultTree before = result();
+    ResultTree pressure = before["studies"][0];
+    pressure["field"] = "pressure";
+    before["studies"].push_back(pressure);
+    const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(before)));
+    EXPECT_TRUE(baseline["studies"][0]["samples"][0].contains("steps"));
+    EXPECT_FALSE(baseline["studies"][1]["samples"][0].contains("steps"));
+    EXPECT_TRUE(compare(baseline, before).differences.empty());
+    ResultTree dearer = before;
+    for (ResultTree& study : dearer["studies"]) {
+        study["samples"][0]["pair_evaluations"] = 9e9;
+    }
+    EXPECT_EQ(count(compare(baseline, dearer), Change::work), 1);
+}
+
+TEST(Compare, GoalsAndCalibrationsAreChecksAndClaimsOfOthersAreNot) {
+    ResultTree before;
+    before["provenance"]["tree_clean"] = true;
+    before["claims"] = {{{"id", "GOAL"}, {"group", "g"}, {"text", "t"}, {"agrees", true}, {"binding", true}},
+                        {{"id", "XU"}, {"group", "g"}, {"text", "t"}, {"agrees", false}, {"binding", false}}};
+    before["calibration"]["results"] = ResultTree::array({{{"scheme", "isph_asai"},
+                                                           {"depth", 0.2},
+                                                           {"duration", 1.0},
+                                                           {"dx", 0.01},
+                                                           {"dt", 0.001},
+                                                           {"usable", 0.1},
+                                                           {"passes", true}}});
+    const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(before)));
+    EXPECT_EQ(baseline["claims"].size(), 1);
+    EXPECT_TRUE(compare(baseline, before).differences.empty());
+    ResultTree now = before;
+    now["claims"][1]["agrees"] = true;
+    EXPECT_TRUE(compare(baseline, now).differences.empty());
+    now["claims"][0]["agrees"] = false;
+    EXPECT_EQ(count(compare(baseline, now), Change::verdict), 1);
+    EXPECT_THROW(reduced_for_baseline(now), UserError) << "a goal is missed";
+    now = before;
+    now["calibration"]["results"][0]["usable"] = 0.05;
+    EXPECT_EQ(count(compare(baseline, now), Change::error_level), 1);
+}
+
+TEST(Compare, WhereTheGateFailsTheTableHasOnlyWhatItFailsOn) {
+    const Comparison comparison = after([](ResultTree& t) {
+        t["operator_studies"].push_back(operator_study("new", "square"));
+        t["studies"][0]["samples"][0]["seconds"] = 9.0;
+        t["studies"][0]["samples"][0]["l2"] = 9.0;
+    });
+    EXPECT_EQ(count(comparison, Change::added) + count(comparison, Change::run_time), 2);
+    const std::string table = markdown(comparison);
+    EXPECT_EQ(std::ranges::count(table, '\n'), 5) << "header, rule, one row, blank, counts\n" << table;
+    EXPECT_NE(table.find("1 new"), std::string::npos) << table;
+}
+
+TEST(Summary, FitsAPullRequestAndNamesVerdictBuildsAndWhy) {
+    ResultTree before = result();
+    ResultTree now = result();
+    now["provenance"]["revision"] = "def";
+    for (int k = 0; k < 100; ++k) {
+        const std::string name = "operator_" + std::to_string(k);
+        before["operator_studies"].push_back(operator_study(name, "square"));
+        now["operator_studies"].push_back(operator_study(name, "square"));
+        now["operator_studies"].back()["samples"][0]["l2"] = 7.0;
+    }
+    const std::string text = summary(compare(before, now), before, now);
+    EXPECT_LE(std::ranges::count(text, '\n'), 40) << text;
+    for (const char* part : {"FAIL", "abc", "def", "operator_0", "more rows", "run time"}) {
+        EXPECT_NE(text.find(part), std::string::npos) << part << '\n' << text;
+    }
+    EXPECT_NE(summary(compare(before, before), before, before).find("PASS"), std::string::npos);
+}
+
+TEST(Merged, IsAllOfOneBuild) {
+    ResultTree operators = result();
+    operators.erase("studies");
+    ResultTree schemes{{"provenance", operators["provenance"]}, {"studies", result()["studies"]}};
+    const ResultTree both = merged(std::array{operators, schemes});
+    EXPECT_TRUE(compare(result(), both).differences.empty());
+    EXPECT_FALSE(compare(result(), both).fails());
+    schemes["provenance"]["revision"] = "other";
+    EXPECT_THROW(merged(std::array{operators, schemes}), UserError);
 }
 
 TEST(Compare, EveryKindOfChangeIsSeen) {
@@ -420,6 +587,15 @@ TEST(Bless, RefusesWhatDoesNotPassAndNamesIt) {
     // A disagreement that is known must stay one: if it agrees, its waiver has to go.
     EXPECT_NE(refusal([](ResultTree& t) { t["published_figures"][1]["agrees"] = true; }).find("XU-ODD"),
               std::string::npos);
+}
+
+TEST(Bless, RefusesARunThatLostWhatItClaims) {
+    ResultTree tree = result();
+    tree["runs"] = ResultTree::array(
+        {{{"scheme", "isph_lee"}, {"group", "g"}, {"survived", true}, {"budget", {{"lost", ""}}}}});
+    EXPECT_NO_THROW(reduced_for_baseline(tree));
+    tree["runs"][0]["budget"]["lost"] = "momentum";
+    EXPECT_THROW(reduced_for_baseline(tree), UserError);
 }
 
 TEST(Bless, KeepsWhetherTheTreeWasClean) {
