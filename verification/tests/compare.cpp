@@ -262,7 +262,7 @@ TEST(Compare, AStudySaysWhatItsRoundOffIs) {
     ResultTree before = result();
     before["studies"][0]["round_off"] = 0.01;
     ResultTree now = before;
-    now["studies"][0]["round_off"] = 0.5;
+    now["studies"][0]["round_off"] = 100.0;
     now["studies"][0]["samples"][1]["l1"] = 1.0;
     EXPECT_EQ(count(compare(before, now), Change::demand), 1);
     EXPECT_EQ(count(compare(before, now), Change::error_level), 1);
