@@ -281,7 +281,11 @@ std::string summary(const verification::RunRecord& record, const std::string& ou
     for (const auto& field : record.fields) {
         lines += " " + field.name;
     }
-    return lines + "\n";
+    std::snprintf(
+        text, sizeof text,
+        "\n%.0f bytes per particle of the neighbour list, %.0f of what else is kept for every pair\n",
+        record.neighbour_bytes_per_particle, record.pair_bytes_per_particle);
+    return lines + text;
 }
 
 Tree summary_tree(const SceneRecord& scene, const verification::RunRecord& record) {
@@ -295,10 +299,22 @@ Tree summary_tree(const SceneRecord& scene, const verification::RunRecord& recor
     for (const auto& [key, value] : metadata_of(scene)) {
         settings[key] = value;
     }
-    return {{"scene", settings},           {"particles", record.particles},
-            {"survived", record.survived}, {"diagnosis", record.diagnosis},
-            {"time", record.time},         {"steps", record.steps},
-            {"seconds", record.seconds},   {"errors", errors}};
+    return {{"scene", settings},
+            {"particles", record.particles},
+            {"survived", record.survived},
+            {"diagnosis", record.diagnosis},
+            {"time", record.time},
+            {"steps", record.steps},
+            {"seconds", record.seconds},
+            {"work",
+             {{"pair_evaluations", record.work.pair_evaluations},
+              {"solver_iterations", record.work.solver_iterations},
+              {"matrix_entries", record.work.matrix_entries},
+              {"particle_steps", record.work.particle_steps}}},
+            {"bytes_per_particle", record.bytes_per_particle},
+            {"neighbour_bytes_per_particle", record.neighbour_bytes_per_particle},
+            {"pair_bytes_per_particle", record.pair_bytes_per_particle},
+            {"errors", errors}};
 }
 
 template <int Dim>

@@ -121,6 +121,9 @@ struct Simulation {
     /// |1/2 sum_ij r_ij x f_ij| over the pairs of the last neighbour list, N m (per metre in 2-D): the rate
     /// at which forces between particles change their angular momentum
     std::function<double(const Simulation&)> internal_torque;
+    /// Bytes of what a scheme keeps for every pair beside the neighbour list, as the equations of a pressure;
+    /// empty where it keeps no such thing.
+    std::function<std::size_t()> pair_bytes;
 
     /// Adds a stage; the pair evaluations that it counts through `count_sweeps` are booked to it.
     void add_stage(std::string name, std::function<void(Simulation&)> run) {

@@ -143,8 +143,9 @@ void add_turbulence_stages(Simulation<Dim>& s) {
     if (model.reads_wall_distance || form.reads_wall) {
         add_wall_distance_stage(s, std::string_view(form.name) == "logarithmic");
     }
-    Field& gradient = s.particles.field("velocity_gradient", Dim * Dim, Lifetime::scratch, model.name);
-    Field& nu_T = s.particles.field("eddy_viscosity", 1, Lifetime::scratch, model.name);
+    Field& gradient =
+        s.particles.field("velocity_gradient", Dim * Dim, Lifetime::scratch, "velocity_gradient");
+    Field& nu_T = s.particles.field("eddy_viscosity", 1, Lifetime::scratch, "eddy_viscosity");
     add_gradient_stage(s, form, gradient);
     s.add_stage("eddy_viscosity",
                 [&gradient, &nu_T, update = model.assemble(s, s.turbulence->settings)](Simulation<Dim>& sim) {

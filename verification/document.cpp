@@ -229,6 +229,8 @@ Tree run_tree(const LadderResult& result, const RunRecord& run) {
               {"end_time", run.time},
               {"setup_seconds", run.setup_seconds},
               {"bytes_per_particle", run.bytes_per_particle},
+              {"neighbour_bytes_per_particle", run.neighbour_bytes_per_particle},
+              {"pair_bytes_per_particle", run.pair_bytes_per_particle},
               {"energy_error", finite_or_null(run.energy_error)},
               {"maximum_speed_error", finite_or_null(run.maximum_speed_error)},
               {"minimum_spacing", finite_or_null(run.minimum_spacing)},

@@ -423,7 +423,8 @@ constexpr std::array<Members, 36> members{{
     {"studies[].samples[]", "a text", "diagnosis"},
     {"runs[]", "a text", "case group scheme diagnosis?"},
     {"runs[]", "a number",
-     "n seed? end_time? setup_seconds? bytes_per_particle? energy_error? minimum_spacing?"},
+     "n seed? end_time? setup_seconds? bytes_per_particle? neighbour_bytes_per_particle? "
+     "pair_bytes_per_particle? energy_error? minimum_spacing?"},
     {"runs[]", "a boolean", "survived"},
     {"runs[]", "a list", "stages fields"},
     {"runs[]", "an object", "settings? budget?"},

@@ -329,6 +329,11 @@ void describe(const solver::Simulation<Dim>& simulation, RunRecord& record) {
         record.fields.push_back({field.name, static_cast<double>(field.bytes_per_particle()), asked_by});
     }
     record.bytes_per_particle = static_cast<double>(simulation.particles.bytes_per_particle());
+    const auto share = [&](std::size_t bytes) {
+        return static_cast<double>(bytes) / static_cast<double>(simulation.particles.size());
+    };
+    record.neighbour_bytes_per_particle = share(simulation.neighbours.bytes());
+    record.pair_bytes_per_particle = simulation.pair_bytes ? share(simulation.pair_bytes()) : 0;
 }
 
 template <int Dim>

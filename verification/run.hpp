@@ -110,7 +110,11 @@ struct RunRecord {
         std::string asked_by;
     };
     std::vector<FieldSize> fields;
-    double bytes_per_particle = 0;                             ///< of the fields
+    double bytes_per_particle = 0; ///< of the fields
+    /// At the end, over the particles: of the neighbour list, and of what else the scheme keeps for every
+    /// pair, as the equations of a pressure.
+    double neighbour_bytes_per_particle = 0;
+    double pair_bytes_per_particle = 0;
     std::vector<std::pair<std::string, std::string>> settings; ///< every resolved key of case and scheme
 };
 

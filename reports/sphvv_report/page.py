@@ -209,6 +209,9 @@ def stages_table(names, group, scheme, run):
 def fields_table(names, group, scheme, run):
     rows = list(run["fields"])
     notes = [] if run["bytes_per_particle"] is None else [f"In all {numbers.integer(run['bytes_per_particle'])} bytes per particle."]
+    if run.get("neighbour_bytes_per_particle") is not None:
+        notes.append(f"Beside the fields the neighbour list takes {numbers.integer(run['neighbour_bytes_per_particle'])}, and what else is "
+                     f"kept for every pair {numbers.integer(run.get('pair_bytes_per_particle') or 0)} bytes per particle.")
     return Table(names.unique(group.label, scheme, "fields"), f"fields allocated by {scheme}",
                  [Column("name", "field"), Column("bytes_per_particle", "bytes per particle", "integer"), Column("asked_by", "asked for by")],
                  rows, notes, context=group.label)

@@ -44,6 +44,7 @@ PICTURE = {"time?": "number", "box?": "numbers", **{name + "?": "numbers" for na
 PROFILE = {"field": "text", "coordinate": "numbers", "ours": "numbers", "exact": "numbers"}
 RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?": "number", "survived": "flag",
        "diagnosis?": "text", "end_time?": "number", "setup_seconds?": "number", "bytes_per_particle?": "number",
+       "neighbour_bytes_per_particle?": "number", "pair_bytes_per_particle?": "number",
        "stages": [STAGE], "fields": [RUN_FIELD], "settings?": "object", "energy_error?": "number",
        "minimum_spacing?": "number", "maximum_speed_error?": "number", "budget?": BUDGET, "history?": [MARK],
        "picture?": PICTURE, "profiles?": [PROFILE]}

@@ -178,7 +178,7 @@ def run(case, group, scheme, sample):
     weight = sum(WEIGHTS.get(name, 0.5) for name in names)
     return {"case": case, "group": group, "scheme": scheme, "n": sample["n"], "seed": 1, "survived": sample["survived"],
             "diagnosis": sample["diagnosis"], "end_time": 1.0 if sample["survived"] else 0.231, "setup_seconds": 0.012,
-            "bytes_per_particle": 132,
+            "bytes_per_particle": 132, "neighbour_bytes_per_particle": 1204, "pair_bytes_per_particle": 317 if scheme != "wcsph" else 0,
             "stages": [{"name": name, "seconds": sample["seconds"] * WEIGHTS.get(name, 0.5) / weight,
                         "pair_evaluations": sample["particle_steps"] * 21 if WEIGHTS.get(name) else 0} for name in names],
             "fields": [{"name": name, "bytes_per_particle": size, "asked_by": asker} for name, size, asker in FIELDS],

@@ -105,26 +105,19 @@ Vector<Dim> Repulsion<Dim>::wrapped(Vector<Dim> x) const {
 }
 
 template <int Dim>
-Vector<Dim> Repulsion<Dim>::of_point(const Vector<Dim>& separation, const Vector<Dim>& normal) const {
-    if (law_.form == RepulsiveForm::normal) {
-        const double away = normal.dot(separation);
-        const Vector<Dim> along = separation - away * normal;
-        double share = 1;
-        if constexpr (Dim == 2) {
-            share = std::max(0., 1 - along.norm() / law_.range);
-        } else {
-            for (int d = 0; d < Dim; ++d) { // one of them is the normal, along which there is nothing
-                share *= std::max(0., 1 - std::abs(along[d]) / law_.range);
-            }
+Vector<Dim> Repulsion<Dim>::along_normal(const Vector<Dim>& separation, const Vector<Dim>& normal) const {
+    const double away = normal.dot(separation);
+    const Vector<Dim> along = separation - away * normal;
+    double share = 1;
+    if constexpr (Dim == 2) {
+        share = std::max(0., 1 - along.norm() / law_.range);
+    } else {
+        for (int d = 0; d < Dim; ++d) { // one of them is the normal, along which there is nothing
+            share *= std::max(0., 1 - std::abs(along[d]) / law_.range);
         }
-        return share > 0 ? Vector<Dim>(share * power_law_repulsion(away, law_.strength, law_.range) * normal)
-                         : Vector<Dim>(Vector<Dim>::Zero());
     }
-    const double r = separation.norm();
-    const double force = law_.form == RepulsiveForm::radial
-                             ? power_law_repulsion(r, law_.strength, law_.range)
-                             : lennard_jones_repulsion(r, law_.strength, law_.range);
-    return force / r * separation;
+    return share > 0 ? Vector<Dim>(share * power_law_repulsion(away, law_.strength, law_.range) * normal)
+                     : Vector<Dim>(Vector<Dim>::Zero());
 }
 
 template <int Dim>
@@ -135,14 +128,31 @@ Vector<Dim> Repulsion<Dim>::of_wall(const Row& row, const Wall<Dim>& wall, const
     std::array<double, Dim> place;
     std::copy_n(at.data(), Dim, place.begin());
     row.grid.stretches_around(row.grid.cell_at(place), stretches);
-    Vector<Dim> total = Vector<Dim>::Zero();
-    for (const auto& stretch : stretches) {
-        const Vector<Dim> from = at - Eigen::Map<const Vector<Dim>>(stretch.shift.data());
-        for (int k = stretch.begin; k < stretch.end; ++k) {
-            total += of_point(from - row.points[k], normal);
+    const auto sum_of = [&](const auto& push) {
+        Vector<Dim> total = Vector<Dim>::Zero();
+        for (const auto& stretch : stretches) {
+            const Vector<Dim> from = at - Eigen::Map<const Vector<Dim>>(stretch.shift.data());
+            for (int k = stretch.begin; k < stretch.end; ++k) {
+                total += push(Vector<Dim>(from - row.points[k]));
+            }
         }
+        return Vector<Dim>(share_ * total);
+    };
+    const auto sum_along_pairs = [&](const auto& force) {
+        return sum_of([&](const Vector<Dim>& separation) -> Vector<Dim> {
+            const double r = separation.norm();
+            return force(r, law_.strength, law_.range) / r * separation;
+        });
+    };
+    switch (law_.form) {
+    case RepulsiveForm::normal:
+        return sum_of([&](const Vector<Dim>& separation) { return along_normal(separation, normal); });
+    case RepulsiveForm::lennard_jones:
+        return sum_along_pairs(lennard_jones_repulsion);
+    case RepulsiveForm::radial:
+        break;
     }
-    return share_ * total;
+    return sum_along_pairs(power_law_repulsion);
 }
 
 template <int Dim>

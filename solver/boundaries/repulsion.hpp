@@ -72,7 +72,7 @@ private:
         std::vector<Vector<Dim>> points;
     };
     Row row_of(const std::vector<Vector<Dim>>& points) const;
-    Vector<Dim> of_point(const Vector<Dim>& separation, const Vector<Dim>& normal) const;
+    Vector<Dim> along_normal(const Vector<Dim>& separation, const Vector<Dim>& normal) const;
     Vector<Dim> of_wall(const Row& row, const Wall<Dim>& wall, const Vector<Dim>& x,
                         Stretches& stretches) const;
     Vector<Dim> of_walls(std::span<const Wall<Dim>> walls, const Vector<Dim>& x, double t,

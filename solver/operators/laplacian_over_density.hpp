@@ -12,15 +12,16 @@ namespace sphvv::solver {
 template <int Dim>
 double laplacian_over_density_morris_weights(const Row<Dim>& row, int i, const MassOverDensity& particles,
                                              double eta_squared, double* weights) {
-    Lanes total{};
-    for (int k = 0; k < row.padded; k += lane_count) {
-        const Lanes densities = particles.rho[i] + gather(particles.rho, row.index + k);
-        const Lanes weight =
-            -8 * particles.m / (densities * densities) * regularised_slope<Dim>(row, k, eta_squared);
-        store(weights + k, weight);
-        total += weight;
-    }
-    return sum(total);
+    return with_slope<Dim>(eta_squared, [&](const auto& slope) {
+        Lanes total{};
+        for (int k = 0; k < row.padded; k += lane_count) {
+            const Lanes densities = particles.rho[i] + gather(particles.rho, row.index + k);
+            const Lanes weight = -8 * particles.m / (densities * densities) * slope(row, k);
+            store(weights + k, weight);
+            total += weight;
+        }
+        return sum(total);
+    });
 }
 
 /// The same in Schwaiger form, w_ij = (tr L_i/dim) V_j (1/rho_i + 1/rho_j) [-F_ij - (L_i gradW_ij).S_i]. Not

@@ -188,20 +188,23 @@ struct RenormalisedCoherent {
 } // namespace pressure_forces
 
 /// The forms of the viscous force for a constant dynamic viscosity mu (kg/(m s)), and with an eddy viscosity
-/// beside it, mu_i = mu + rho_i nu_T,i; made and called as the pressure forces are.
+/// beside it, mu_i = mu + rho_i nu_T,i; made and called as the pressure forces are. Those that read F_ij take
+/// it by a slope of laplacian_morris.hpp; the others take eta from it.
 namespace viscous_forces {
 
 /// Of an inviscid fluid: there is no such force, and no pair is asked for one.
-struct None {};
+struct None {
+    static constexpr bool reads_slope = false;
+};
 
 /// 2 mu m/(rho_i rho_j) F_ij r^2/(r^2 + eta^2) (u_i - u_j). Source: Morris et al. 1997; Lee 2008 §1.3.
 struct Morris {
+    static constexpr bool reads_slope = true;
     template <int Dim>
-    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
-        return [&fields, i, scale = 2 * mu * m * fields.specific_volume[i],
-                eta_squared](const Pairs<Dim>& pairs) {
-            const Lanes viscous = scale * gather(fields.specific_volume, pairs.j()) *
-                                  regularised_slope<Dim>(pairs.row, pairs.k, eta_squared);
+    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, const auto& slope) {
+        return [&fields, i, scale = 2 * mu * m * fields.specific_volume[i], slope](const Pairs<Dim>& pairs) {
+            const Lanes viscous =
+                scale * gather(fields.specific_volume, pairs.j()) * slope(pairs.row, pairs.k);
             return [viscous, pairs, &fields, i](int d) {
                 return viscous * (fields.u[d][i] - gather(fields.u[d], pairs.j()));
             };
@@ -214,10 +217,11 @@ struct Morris {
 /// direction and adds nothing. Source: Cleary & Monaghan 1999; Lee 2008 §1.3 with nu_i = mu/rho_i, which
 /// makes (nu_i + nu_j)/(rho_i + rho_j) = mu/(rho_i rho_j); Issa §2 (8 in 2-D, 10 in 3-D).
 struct MonaghanCleary {
+    static constexpr bool reads_slope = false;
     template <int Dim>
-    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
+    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, const auto& slope) {
         return [&fields, i, scale = 2 * (Dim + 2) * mu * m * fields.specific_volume[i],
-                eta_squared](const Pairs<Dim>& pairs) {
+                eta_squared = slope.eta_squared](const Pairs<Dim>& pairs) {
             Lanes along{};
             for (int d = 0; d < Dim; ++d) {
                 along += (fields.u[d][i] - gather(fields.u[d], pairs.j())) * pairs.separation(d);
@@ -258,15 +262,15 @@ struct LogarithmicMean {
 /// viscosity, mu = rho nu_T. Source: Morris et al. 1997; Issa 2005 §2.
 template <class Mean>
 struct MorrisEddy {
+    static constexpr bool reads_slope = true;
     template <int Dim>
-    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
+    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, const auto& slope) {
         const double v_i = fields.specific_volume[i];
         return [&fields, i, m, mu, v_i, mu_t = fields.eddy_viscosity[i] / v_i,
-                eta_squared](const Pairs<Dim>& pairs) {
+                slope](const Pairs<Dim>& pairs) {
             const Lanes v_j = gather(fields.specific_volume, pairs.j());
             const Lanes both = 2 * mu + Mean::doubled(mu_t, gather(fields.eddy_viscosity, pairs.j()) / v_j);
-            const Lanes viscous =
-                m * v_i * v_j * both * regularised_slope<Dim>(pairs.row, pairs.k, eta_squared);
+            const Lanes viscous = m * v_i * v_j * both * slope(pairs.row, pairs.k);
             return [viscous, pairs, &fields, i](int d) {
                 return viscous * (fields.u[d][i] - gather(fields.u[d], pairs.j()));
             };
@@ -278,11 +282,12 @@ struct MorrisEddy {
 /// nu_T,i: Monaghan-Cleary with an eddy viscosity. Source: Issa 2005 §5.1 (8 in 2-D).
 template <class Mean>
 struct MonaghanClearyEddy {
+    static constexpr bool reads_slope = false;
     template <int Dim>
-    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, double eta_squared) {
+    static auto at(int i, const MomentumFields<Dim>& fields, double m, double mu, const auto& slope) {
         const double v_i = fields.specific_volume[i];
         return [&fields, i, scale = 2 * (Dim + 2) * m * v_i, v_i, nu_i = fields.eddy_viscosity[i], mu,
-                eta_squared](const Pairs<Dim>& pairs) {
+                eta_squared = slope.eta_squared](const Pairs<Dim>& pairs) {
             Lanes along{};
             for (int d = 0; d < Dim; ++d) {
                 along += (fields.u[d][i] - gather(fields.u[d], pairs.j())) * pairs.separation(d);
@@ -303,7 +308,7 @@ struct MonaghanClearyEddy {
 template <int Dim, class PressureForce, class ViscousForce>
 requires std::same_as<ViscousForce, viscous_forces::None>
 auto pair_acceleration(const Row<Dim>& row, int i, const MomentumFields<Dim>& fields, double m, double /*mu*/,
-                       double /*eta_squared*/) {
+                       const auto& /*slope*/) {
     return [pressure = PressureForce::template at<Dim>(row, i, fields, m)](const Pairs<Dim>& pairs) {
         const auto by_pressure = pressure(pairs);
         std::array<Lanes, Dim> result;
@@ -316,18 +321,27 @@ auto pair_acceleration(const Row<Dim>& row, int i, const MomentumFields<Dim>& fi
 
 template <int Dim, class PressureForce, class ViscousForce>
 auto pair_acceleration(const Row<Dim>& row, int i, const MomentumFields<Dim>& fields, double m, double mu,
-                       double eta_squared) {
-    return
-        [pressure = PressureForce::template at<Dim>(row, i, fields, m),
-         viscosity = ViscousForce::template at<Dim>(i, fields, m, mu, eta_squared)](const Pairs<Dim>& pairs) {
-            const auto by_pressure = pressure(pairs);
-            const auto by_viscosity = viscosity(pairs);
-            std::array<Lanes, Dim> result;
-            for (int d = 0; d < Dim; ++d) {
-                result[d] = by_pressure(d) + by_viscosity(d);
-            }
-            return result;
-        };
+                       const auto& slope) {
+    return [pressure = PressureForce::template at<Dim>(row, i, fields, m),
+            viscosity = ViscousForce::template at<Dim>(i, fields, m, mu, slope)](const Pairs<Dim>& pairs) {
+        const auto by_pressure = pressure(pairs);
+        const auto by_viscosity = viscosity(pairs);
+        std::array<Lanes, Dim> result;
+        for (int d = 0; d < Dim; ++d) {
+            result[d] = by_pressure(d) + by_viscosity(d);
+        }
+        return result;
+    };
+}
+
+/// body(slope) with the slope that a viscous force takes.
+template <int Dim, class ViscousForce, class Body>
+auto with_slope_of(double eta_squared, const Body& body) {
+    if constexpr (ViscousForce::reads_slope) {
+        return with_slope<Dim>(eta_squared, body);
+    } else {
+        return body(RegularisedSlope<Dim>{eta_squared});
+    }
 }
 
 /// Acceleration of particle i (m/s2) by pressure and viscosity. The default,
@@ -337,15 +351,17 @@ auto pair_acceleration(const Row<Dim>& row, int i, const MomentumFields<Dim>& fi
 template <int Dim, class PressureForce = pressure_forces::Sigma2, class ViscousForce = viscous_forces::Morris>
 Vector<Dim> momentum_weakly_compressible(const Row<Dim>& row, int i, const MomentumFields<Dim>& fields,
                                          double m, double mu, double eta_squared) {
-    const auto by = pair_acceleration<Dim, PressureForce, ViscousForce>(row, i, fields, m, mu, eta_squared);
-    std::array<Lanes, Dim> total{};
-    for (int k = 0; k < row.padded; k += lane_count) {
-        const std::array<Lanes, Dim> a = by(Pairs<Dim>{row, k});
-        for (int d = 0; d < Dim; ++d) {
-            total[d] += a[d];
+    return with_slope_of<Dim, ViscousForce>(eta_squared, [&](const auto& slope) {
+        const auto by = pair_acceleration<Dim, PressureForce, ViscousForce>(row, i, fields, m, mu, slope);
+        std::array<Lanes, Dim> total{};
+        for (int k = 0; k < row.padded; k += lane_count) {
+            const std::array<Lanes, Dim> a = by(Pairs<Dim>{row, k});
+            for (int d = 0; d < Dim; ++d) {
+                total[d] += a[d];
+            }
         }
-    }
-    return lane_sums<Dim>(total);
+        return lane_sums<Dim>(total);
+    });
 }
 
 /// Components of a torque: one in 2-D, three in 3-D.
@@ -358,22 +374,24 @@ template <int Dim, class PressureForce, class ViscousForce>
 std::array<double, torque_components<Dim>>
 torque_weakly_compressible(const Row<Dim>& row, int i, const MomentumFields<Dim>& fields, double m, double mu,
                            double eta_squared) {
-    const auto by = pair_acceleration<Dim, PressureForce, ViscousForce>(row, i, fields, m, mu, eta_squared);
-    std::array<Lanes, torque_components<Dim>> total{};
-    for (int k = 0; k < row.padded; k += lane_count) {
-        const Pairs<Dim> pairs{row, k};
-        const std::array<Lanes, Dim> a = by(pairs);
-        for (int c = 0; c < torque_components<Dim>; ++c) {
-            const int first = Dim == 2 ? 0 : (c + 1) % Dim;
-            const int second = Dim == 2 ? 1 : (c + 2) % Dim;
-            total[c] += pairs.separation(first) * a[second] - pairs.separation(second) * a[first];
+    return with_slope_of<Dim, ViscousForce>(eta_squared, [&](const auto& slope) {
+        const auto by = pair_acceleration<Dim, PressureForce, ViscousForce>(row, i, fields, m, mu, slope);
+        std::array<Lanes, torque_components<Dim>> total{};
+        for (int k = 0; k < row.padded; k += lane_count) {
+            const Pairs<Dim> pairs{row, k};
+            const std::array<Lanes, Dim> a = by(pairs);
+            for (int c = 0; c < torque_components<Dim>; ++c) {
+                const int first = Dim == 2 ? 0 : (c + 1) % Dim;
+                const int second = Dim == 2 ? 1 : (c + 2) % Dim;
+                total[c] += pairs.separation(first) * a[second] - pairs.separation(second) * a[first];
+            }
         }
-    }
-    std::array<double, torque_components<Dim>> result;
-    for (int c = 0; c < torque_components<Dim>; ++c) {
-        result[c] = sum(total[c]);
-    }
-    return result;
+        std::array<double, torque_components<Dim>> result;
+        for (int c = 0; c < torque_components<Dim>; ++c) {
+            result[c] = sum(total[c]);
+        }
+        return result;
+    });
 }
 
 } // namespace sphvv::solver

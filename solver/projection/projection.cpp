@@ -280,15 +280,20 @@ SharedProjection<Dim> make_projection(Simulation<Dim>& s, Density density) {
     }
     const bool summed = density == Density::summed;
     const bool keeps_L = !summed && (gradient == Gradient::normalised || schwaiger);
-    return std::make_shared<Projection<Dim>>(Projection<Dim>{
+    const auto projection = std::make_shared<Projection<Dim>>(Projection<Dim>{
         particles.field("pressure", 1, Lifetime::state, "pressure_poisson"),
         particles.field("velocity_next", Dim, Lifetime::scratch, forces_name(s)),
         keeps_L ? &particles.field("renormalisation", Dim * Dim, Lifetime::scratch,
                                    is_viscous(s) ? "viscosity" : "renormalisation")
                 : nullptr,
-        summed ? &particles.field("particle_density", 1, Lifetime::scratch, "density") : nullptr, gradient,
-        viscosity, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density},
+        summed ? &particles.field("particle_density", 1, Lifetime::scratch, "pressure_poisson") : nullptr,
+        gradient, viscosity, schwaiger, eta * eta, UniformVolume{s.particle_mass / s.density},
         PressurePoisson<Dim>(solver_options<Dim>(settings)), implicit_viscosity_of(s, viscosity)});
+    s.pair_bytes = [projection] {
+        return projection->poisson.bytes() +
+               (projection->implicit_viscosity ? projection->implicit_viscosity->bytes() : 0);
+    };
+    return projection;
 }
 
 template <int Dim>
@@ -345,17 +350,16 @@ void form_damped_velocity(Simulation<Dim>& s, Projection<Dim>& p, double dt) {
         if (p.renormalisation != nullptr) {
             write_matrix<Dim>(*p.renormalisation, i, renormalisation<Dim>(row, p.volume));
         }
-        std::array<Lanes, Dim> total{};
-        for (int k = 0; k < row.padded; k += lane_count) {
-            const Lanes r2 = squared_separation<Dim>(row, k) + p.eta_squared;
-            const Lanes inside = p.eta_squared > 0 ? squared_separation<Dim>(row, k) / r2 : Lanes{} + 1.0;
-            const Lanes weight =
-                V * (gather(nu.data(), row.index + k) + nu[i]) * load(row.slope + k) * inside;
-            for (int d = 0; d < Dim; ++d) {
-                total[d] += weight * (u[d][i] - gather(u[d], row.index + k));
+        const Vector<Dim> viscous = with_slope<Dim>(p.eta_squared, [&](const auto& slope) {
+            std::array<Lanes, Dim> total{};
+            for (int k = 0; k < row.padded; k += lane_count) {
+                const Lanes weight = V * (gather(nu.data(), row.index + k) + nu[i]) * slope(row, k);
+                for (int d = 0; d < Dim; ++d) {
+                    total[d] += weight * (u[d][i] - gather(u[d], row.index + k));
+                }
             }
-        }
-        const Vector<Dim> viscous = lane_sums<Dim>(total);
+            return lane_sums<Dim>(total);
+        });
         for (int d = 0; d < Dim; ++d) {
             next[d][i] = u[d][i] + dt * (viscous[d] + s.body_force[d]);
         }

@@ -368,6 +368,13 @@ void assemble(Simulation<Dim>& s) {
     for (std::size_t i = 0; i < particles.size(); ++i) {
         fields->strength[0][i] = 1 + s.settings.number("shift_disorder") * scattered(particles.id[i]);
     }
+    s.pair_bytes = [fields] {
+        std::size_t bytes = fields->poisson.bytes();
+        for (const auto& weights : fields->gradient) {
+            bytes += weights.capacity() * sizeof(double);
+        }
+        return bytes;
+    };
     s.add_stage("time_step", projection::choose_time_step<Dim>);
     s.add_stage("rates_at_start", [fields](Simulation<Dim>& sim) {
         if (sim.step == 1) {

@@ -166,17 +166,20 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
     const bool renormalised = continuity == "renormalised" || pressure_force.starts_with("renormalised") ||
                               pressure_force.ends_with("taylor");
     const bool hybrid = pressure_force == "hybrid_taylor";
+    const bool predicts = s.settings.word("integrator") == "predictor_corrector";
+    const char* const momentum = predicts ? "predictor" : "momentum"; // the stages that form the rates
+    const char* const continuity_stage = predicts ? "predictor" : "continuity";
     const auto scratch = [&](const char* name, int components, const char* asked_by) -> Field& {
         return particles.field(name, components, Lifetime::scratch, asked_by);
     };
-    return {particles.field("density", 1, Lifetime::state, "continuity"),
+    return {particles.field("density", 1, Lifetime::state, continuity_stage),
             particles.field("pressure", 1, Lifetime::state, "equation_of_state"),
-            pressure_force == "sigma_2" ? &scratch("pressure_over_squared_density", 1, "momentum") : nullptr,
-            scratch("specific_volume", 1, "momentum"),
-            scratch("acceleration", Dim, "momentum"),
-            scratch("density_rate", 1, "continuity"),
-            renormalised ? &scratch("renormalisation", symmetric_components<Dim>, "momentum") : nullptr,
-            hybrid ? &scratch("lowest_eigenvalue", 1, "momentum") : nullptr,
+            pressure_force == "sigma_2" ? &scratch("pressure_over_squared_density", 1, momentum) : nullptr,
+            scratch("specific_volume", 1, momentum),
+            scratch("acceleration", Dim, momentum),
+            scratch("density_rate", 1, continuity_stage),
+            renormalised ? &scratch("renormalisation", symmetric_components<Dim>, momentum) : nullptr,
+            hybrid ? &scratch("lowest_eigenvalue", 1, momentum) : nullptr,
             tait,
             eta * eta,
             continuity == "sigma_2"   ? Continuity::sigma_2
@@ -184,7 +187,7 @@ Rates<Dim> rates(Simulation<Dim>& s, const Tait& tait) {
                                       : Continuity::renormalised,
             forces_of<Dim>(s),
             hybrid ? 2 : 1,
-            s.turbulence ? &scratch("eddy_viscosity", 1, "momentum") : nullptr};
+            s.turbulence ? &scratch("eddy_viscosity", 1, momentum) : nullptr};
 }
 
 /// Density and pressure of images: those of the particle, and where the walls hold the fluid up against the
