@@ -91,6 +91,7 @@ endfunction()
 function(sphvv_registry room folder type out_sources)
   file(GLOB files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/*.cpp)
   list(SORT files)
+  list(LENGTH files count)
   set(declarations "")
   set(entries "")
   foreach(file IN LISTS files)
@@ -109,7 +110,7 @@ function(sphvv_registry room folder type out_sources)
 namespace sphvv::@room@::@folder@ {
 @declarations@
 std::span<const @type@* const> all() {
-    static const std::array entries{
+    static const std::array<const @type@*, @count@> entries{
 @entries@    };
     return entries;
 }
