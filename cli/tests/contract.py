@@ -91,6 +91,19 @@ class Contract(unittest.TestCase):
             refused = sphvv("report", str(damaged), "--out", str(self.folder / "report"))
             self.assert_refused(refused, damaged.name)
         self.assertEqual((self.folder / "report" / "index.html").read_text(), page)
+        # What changed since a baseline: made by compare, shown by report; that of another run is refused.
+        changes = self.folder / "changes.json"
+        compared = sphvv("compare", str(out), str(out), "--json", str(changes))
+        self.assertEqual(compared.returncode, 0, compared.stderr)
+        beside = sphvv("report", str(out), "--changes", str(changes), "--json", "-", "--out", str(self.folder / "report"))
+        self.assertEqual(beside.returncode, 0, beside.stderr)
+        self.assertIn("guide.tex", json.loads(beside.stdout)["files"])
+        self.assertIn("UNCHANGED</span> result.h5 against result.h5", (self.folder / "report" / "index.html").read_text())
+        other = json.loads(changes.read_text())
+        other["current"]["started"] = "2001-01-01T00:00:00Z"
+        changes.write_text(json.dumps(other))
+        self.assert_refused(sphvv("report", str(out), "--changes", str(changes), "--out", str(self.folder / "report")), "changes.json")
+        self.assert_refused(sphvv("report", str(out), "--history", str(changes), "--out", str(self.folder / "report")), "changes.json")
         (self.folder / "taken").write_text("")
         self.assert_refused(sphvv("report", str(out), "--out", str(self.folder / "taken")), "taken")
 

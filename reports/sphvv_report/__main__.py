@@ -13,7 +13,10 @@ EPILOG = """example:
   sphvv verify taylor_green --out results.h5
   sphvv report results.h5 --out report
 
-Writes DIR/index.html (one file, no network, no script), DIR/tables/*.csv, *.md, *.tex and DIR/figures/*.svg.
+  sphvv compare verification/baselines/operators.json now.h5 --json changes.json; sphvv report now.h5 --changes changes.json --out report
+
+Writes DIR/index.html (one file, no network, no script), DIR/tables/*.csv, *.md, *.tex, DIR/figures/*.svg, *.pdf, and DIR/guide.tex, the same
+report for paper: cd DIR && pdflatex guide && pdflatex guide.
 Exit status: 0 the report is written, whatever its verdicts say; 2 a file or the output is not usable, and nothing is written."""
 
 
@@ -23,6 +26,9 @@ def parse_arguments(arguments):
         epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", metavar="FILE", help="a result file of sphvv (.h5 or its .json twin)")
     parser.add_argument("--out", required=True, metavar="DIR", help="folder for the page, its tables and its pictures")
+    parser.add_argument("--changes", action="append", default=[], metavar="FILE.json",
+                        help="what changed since a baseline: output of sphvv compare BASELINE FILE --json FILE.json; once for each comparison")
+    parser.add_argument("--history", metavar="FILE.jsonl", help="nights to draw trends of: the history file of scripts/nightly")
     parser.add_argument("--json", metavar="FILE", help="write the list of written files, verdict counts and check counts; - is standard output")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     return parser.parse_args(arguments)
@@ -44,9 +50,12 @@ def main(arguments=None):
     try:
         results = merge([read_result(path) for path in options.files])
         # Imported late: matplotlib takes most of a second, which a refused file should not cost.
+        from .changes import read_changes
+        from .nights import read_history
         from .output import write_report
         from .page import build_report
-        report = build_report(results)
+        comparisons = [read_changes(path, results["files"]) for path in options.changes]
+        report = build_report(results, comparisons, read_history(options.history) if options.history else [])
         write_report(options.out, report.files)
         if options.json:
             write_summary(options.json, {"index": os.path.join(options.out, "index.html"),

@@ -62,24 +62,28 @@ KINDS = [
 ]
 
 
-def is_waived(check):
-    return bool(check.get("waiver")) and not check["agrees"]
+def is_waived(kind, check):
+    """Whether it is not as it must be, and known not to be."""
+    return bool(check.get("waiver")) and not check[kind.flag]
 
 
 def is_as_it_must_be(kind, check):
-    return is_waived(check) or (bool(check[kind.flag]) and not check.get("waiver"))
+    return is_waived(kind, check) or (bool(check[kind.flag]) and not check.get("waiver"))
+
+
+def waived_findings(kind, checks):
+    """The waived ones of a kind as one finding; none where there are none."""
+    waived = [check for check in checks if is_waived(kind, check)]
+    reasons = [f"{kind.where(check).removeprefix('published figure ')}: {kind.failure(check)}" for check in waived]
+    return [Finding(3, "waived", kind.member.replace("_", " "), f"{len(waived)} of {len(checks)} are not as they should be", reasons, "waivers")] \
+        if waived else []
 
 
 def findings(results):
-    """Every check that is not as it must be; the waived figures as one."""
+    """Every check that is not as it must be; the waived ones of a kind as one."""
     found = [Finding(0, "fail", kind.where(check), kind.failure(check), [kind.reason(check)], check.get("anchor", kind.member))
              for kind in KINDS for check in results[kind.member] if not is_as_it_must_be(kind, check)]
-    waived = list(filter(is_waived, results["published_figures"]))
-    if waived:
-        found.append(Finding(3, "waived", "published figures", f"{len(waived)} of {len(results['published_figures'])} do not agree",
-                             [f"{figure['id']}: published {figure['published']}, ours {figure['ours']}" for figure in waived],
-                             "waivers"))
-    return found
+    return found + [finding for kind in KINDS for finding in waived_findings(kind, results[kind.member])]
 
 
 def counts(results):
@@ -90,14 +94,17 @@ def counts(results):
 
 def summary(results):
     """The counts in words, one clause a kind."""
-    waived = sum(map(is_waived, results["published_figures"]))
-    return [f"{passing} of {total} {kind.passing}" + (f", {waived} waived" if kind.flag == "agrees" and waived else "")
-            for kind in KINDS for passing, total in [counts(results).get(kind.member, (0, 0))] if total]
+    clauses = []
+    for kind in KINDS:
+        passing, total = counts(results).get(kind.member, (0, 0))
+        waived = sum(is_waived(kind, check) for check in results[kind.member])
+        clauses += [f"{passing} of {total} {kind.passing}" + (f", {waived} waived" if waived else "")] if total else []
+    return clauses
 
 
 def waiver_rows(results):
-    return [{"group": f"published figure {figure['id']}", "verdict": f"published {figure['published']}, ours {figure['ours']}",
-             "waiver": figure["waiver"]} for figure in results["published_figures"] if figure["waiver"]]
+    return [{"group": kind.where(check), "scheme": check.get("scheme", ""), "verdict": check.get("verdict") or kind.failure(check), "waiver": check["waiver"]}
+            for kind in KINDS for check in results[kind.member] if check.get("waiver")]
 
 
 # -------------------------------------------------------------------------------------------------------------- tables
@@ -188,13 +195,13 @@ def faults_table(names, faults):
 
 
 def view(page):
-    """The chapters on kernels, published figures and seeded faults; what the files do not hold is None."""
+    """The chapters on kernels, figures of operators and seeded faults; what the files do not hold is None."""
     tables = {"kernels": (kernel_table, "kernel_checks"), "kernel_checks": (kernel_checks_table, "kernel_checks"),
-              "known_errors": (known_errors_table, "known_errors"), "published": (published_table, "published_figures"),
+              "published": (published_table, "published_figures"),
               "sums": (sums_table, "consistency_sums"), "faults": (faults_table, "seeded_faults")}
     made = {name: page.keep(make(page.table_names, page.results[member])) if page.results[member] else None
             for name, (make, member) in tables.items()}
     sums = page.results["consistency_sums"]
     stamp = page.stamp(unique_objects(entry["result"] for entry in sums))
-    made["sums_plot"] = page.draw(figures.consistency(page.figure_names.unique("consistency-sums"), sums, stamp)) if sums else None
+    made["sums_plot"] = page.draw(figures.consistency, page.figure_names.unique("consistency-sums"), sums, stamp) if sums else None
     return made

@@ -81,36 +81,40 @@ def picture(name, title, rows, quantities, stamp):
                 axes.axhline(lattice[0], **THEORY)
         figures.label_above(every[0], title.split(" of ")[0].lower())
         figures.add_legend(canvas, list(handles.values()))
-        svg = figures.finish(canvas, name, title, f"{title}: {len(number)} matrices against N, {len(disorder)} against jitter, {len(share)} against "
-                                                  "the share of the surface.", stamp)
-    return svg
+        return figures.finish(canvas, name, title, f"{title}: {len(number)} matrices against N, {len(disorder)} against jitter, {len(share)} against "
+                                                   "the share of the surface.", stamp)
 
 
 def is_morris(row):
     return row["laplacian"] == "morris"
 
 
-def pictures(page, rows):
-    stamp = page.stamp(unique_objects(row["result"] for row in rows))
-    name = page.figure_names.unique("conditioning", "condition")
-    condition = picture(name, "Condition number of the pressure equation", rows, [
+def condition_picture(name, rows, stamp):
+    drawing = picture(name, "Condition number of the pressure equation", rows, [
         ("Morris, lattice", lambda row: is_morris(row) and row["jitter"] == 0, "condition", dict(color=MORRIS, marker="o")),
         ("Morris, jitter (five seeds)", lambda row: is_morris(row) and row["jitter"] > 0, "condition", dict(color=DISORDERED, marker="^")),
         ("Schwaiger (singular values)", lambda row: not is_morris(row), "condition", dict(color=SCHWAIGER, marker="s", markerfacecolor="none")),
         ("theory: lattice sums", is_morris, "theory", THEORY)], stamp)
-    made = [figures.Picture(name, "Condition number of the pressure equation against the number of particles, disorder, and the share of them with "
-                                  "p = 0 at the surface. It grows like N in the plane, little with disorder, and as the square of the depth below a surface.",
-                            condition)]
-    name = page.figure_names.unique("conditioning", "iterations")
-    iterations = picture(name, "Iterations of the pressure solver", rows, [
+    return figures.Picture(name, "Condition number of the pressure equation against the number of particles, disorder, and the share of them with "
+                                 "p = 0 at the surface. It grows like N in the plane, little with disorder, and as the square of the depth below a surface.",
+                           drawing)
+
+
+def iterations_picture(name, rows, stamp):
+    drawing = picture(name, "Iterations of the pressure solver", rows, [
         ("conjugate gradients, Jacobi", is_morris, "iterations_jacobi", dict(color=MORRIS, marker="o")),
         ("their bound from the condition number", is_morris, "bound_jacobi", dict(color="black", marker="_", markersize=9)),
         ("conjugate gradients, two levels", is_morris, "iterations_two_level", dict(color=TWO_LEVELS, marker="^")),
         ("Schwaiger: Bi-CGSTAB, Jacobi", lambda row: not is_morris(row), "iterations_jacobi", dict(color=SCHWAIGER, marker="s", markerfacecolor="none"))],
         stamp)
-    made.append(figures.Picture(name, "Iterations until the residual is 1e-8 of the source. On two levels they do not grow with the number of particles.",
-                                iterations))
-    return [page.draw(each) for each in made]
+    return figures.Picture(name, "Iterations until the residual is 1e-8 of the source. On two levels they do not grow with the number of particles.",
+                           drawing)
+
+
+def pictures(page, rows):
+    stamp = page.stamp(unique_objects(row["result"] for row in rows))
+    return [page.draw(make, page.figure_names.unique("conditioning", quantity), rows, stamp)
+            for make, quantity in ((condition_picture, "condition"), (iterations_picture, "iterations"))]
 
 
 def view(page):

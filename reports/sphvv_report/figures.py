@@ -1,4 +1,4 @@
-"""The pictures of a report, drawn by matplotlib as small deterministic SVG: text stays text, no date, no metadata."""
+"""The pictures of a report, drawn by matplotlib as small deterministic SVG (text stays text) and PDF, without dates."""
 
 import base64
 import html
@@ -38,11 +38,22 @@ SPACINGS = {"h": "smoothing length h [m]", "dx": "particle spacing dx [m]", "dt"
 
 
 @dataclass
+class Drawing:
+    """One canvas twice: as SVG for the page, and as PDF for LaTeX, which cannot read the other."""
+    svg: str
+    pdf: bytes
+
+
+@dataclass
 class Picture:
-    """A finished figure: file name (without .svg), caption below it, and the SVG."""
+    """A finished figure: file name (without .svg), caption below it, and what was drawn."""
     name: str
     caption: str
-    svg: str
+    drawing: Drawing
+
+    @property
+    def svg(self):
+        return self.drawing.svg
 
 
 @dataclass
@@ -119,13 +130,13 @@ def rung_ticks(values):
     return kept
 
 
-def new_canvas(title, panels, legend_lines):
-    """Canvas with so many axes one below the other, and room for a legend of so many lines below."""
+def new_canvas(title, panels, legend_lines, plot_height=PLOT_HEIGHT):
+    """Canvas with so many axes of that height (inches) one below the other, and room for a legend of so many lines below."""
     legend = 0.08 + LINE_HEIGHT * legend_lines
-    height = 0.36 + panels * (PLOT_HEIGHT + 0.42) + 0.42 + legend
+    height = 0.36 + panels * (plot_height + 0.42) + 0.42 + legend
     canvas = Canvas(figsize=(WIDTH, height))
-    bottoms = [0.72 + legend + (PLOT_HEIGHT + 0.42) * index for index in reversed(range(panels))]
-    every = [canvas.add_axes([0.66 / WIDTH, bottom / height, (WIDTH - 0.78) / WIDTH, PLOT_HEIGHT / height]) for bottom in bottoms]
+    bottoms = [0.72 + legend + (plot_height + 0.42) * index for index in reversed(range(panels))]
+    every = [canvas.add_axes([0.66 / WIDTH, bottom / height, (WIDTH - 0.78) / WIDTH, plot_height / height]) for bottom in bottoms]
     canvas.text(0.08 / WIDTH, 1 - 0.13 / height, plain(title), ha="left", va="center", fontsize=9, fontweight="bold")
     for axes in every:
         axes.grid(True, color="#e3e3e3", linewidth=0.6)
@@ -189,17 +200,23 @@ def sentence(text):
 
 
 def error_label(field, norm, relative):
-    norm = NORM_TITLES.get(norm, norm)
+    norm, words = NORM_TITLES.get(norm, norm), field.replace("_", " ")
     if relative:
-        return f"relative {norm} error of {field}"
+        return f"relative {norm} error of {words}"
     unit = FIELD_UNITS.get(field)
-    return f"{norm} error of {field}" + (f" [{unit}]" if unit else "")
+    return f"{norm} error of {words}" + (f" [{unit}]" if unit else "")
 
 
 # -------------------------------------------------------------------------------------------------------- SVG
 
 def shorten(text, length):
     return text if len(text) <= length else text[: length - 1] + "…"
+
+
+def heading(group, words):
+    """The title of a picture: the group as far as the width leaves room for it, and what is shown of it."""
+    words = words.replace("_", " ")
+    return f"{shorten(group, max(20, 56 - len(words)))}: {words}"
 
 
 def with_palette(encoded):
@@ -211,15 +228,16 @@ def with_palette(encoded):
 
 
 def finish(canvas, name, title, description, stamp, dots_per_inch=100):
-    """The SVG of a canvas, stamped with the source revision, with unique ids, a title and a description.
+    """The drawing of a canvas, stamped with the source revision; the SVG has unique ids, a title and a description.
 
     dots_per_inch: of what is drawn as pixels.
     """
     canvas.text(0.995, 0.06 / canvas.get_figheight(), plain(stamp), ha="right", va="bottom", fontsize=6.5, color="#666666")
-    stream = io.StringIO()
+    stream, document = io.StringIO(), io.BytesIO()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # letters that DejaVu lacks stay text; the reader's font has them
         canvas.savefig(stream, format="svg", dpi=dots_per_inch, metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+        canvas.savefig(document, format="pdf", dpi=dots_per_inch, metadata={"Title": title, "CreationDate": None, "Creator": None, "Producer": None})
     svg = stream.getvalue()
     svg = svg[svg.index("<svg"):]
     svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.S)
@@ -234,7 +252,7 @@ def finish(canvas, name, title, description, stamp, dots_per_inch=100):
     labelled = opening[:-1] + f' role="img" aria-labelledby="{prefix}title {prefix}desc">'
     heading = (f'\n<title id="{prefix}title">{html.escape(title)}</title>'
                f'\n<desc id="{prefix}desc">{html.escape(description)}</desc>')
-    return labelled + heading + svg[len(opening):]
+    return Drawing(labelled + heading + svg[len(opening):], document.getvalue())
 
 
 # ------------------------------------------------------------------------------------------------ convergence
@@ -329,7 +347,7 @@ def convergence(name, group, field, studies, scheme_looks, stamp, spacing="h"):
     labels = [legend_text(study) for study in studies]
     ended = [study for study in studies if not all(sample["survived"] for sample in study["samples"])]
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
-        canvas, axes = new_axes(f"{shorten(group, 48)}: {field}", SPACINGS[spacing], error_label(field, norm, relative),
+        canvas, axes = new_axes(heading(group, field), SPACINGS[spacing], error_label(field, norm, relative),
                                 line_count(labels))
         x_limits = set_log_axis(axes.xaxis, min(rungs), max(rungs))
         # Room below the points for the yardstick and the crosses.
@@ -353,8 +371,8 @@ def convergence(name, group, field, studies, scheme_looks, stamp, spacing="h"):
         add_legend(canvas, handles)
         described = "; ".join(f"{study['scheme']}: {describe(study, points, spacing)}" for study, points, _ in curves)
         title = f"Convergence of {field}, {group}"
-        svg = finish(canvas, name, title, f"Log-log plot of the {error_label(field, norm, relative)} against {spacing}. {described}.", stamp)
-    return Picture(name, convergence_caption(field, norm, relative, studies, spacing), svg)
+        drawing = finish(canvas, name, title, f"Log-log plot of the {error_label(field, norm, relative)} against {spacing}. {described}.", stamp)
+    return Picture(name, convergence_caption(field, norm, relative, studies, spacing), drawing)
 
 
 def describe(study, points, spacing):
@@ -411,7 +429,7 @@ def cost_plot(name, front, relative, scheme_looks, stamp):
     judgements = [front_label(rows.get(scheme)) for scheme, _ in curves]
     labels = [named(scheme, words, words.split(" at error ")[0]) for (scheme, _), words in zip(curves, judgements)]
     with matplotlib.rc_context({**STYLE, "svg.hashsalt": name}):
-        canvas, axes = new_axes(f"{shorten(front['group'], 48)}: {front['field']}", cost_title,
+        canvas, axes = new_axes(heading(front["group"], front["field"]), cost_title,
                                 error_label(front["field"], front["norm"], relative), line_count(labels))
         x_limits = set_log_axis(axes.xaxis, min(c for c, _ in every), max(c for c, _ in every))
         y_limits = set_log_axis(axes.yaxis, min(e for _, e in every), max(e for _, e in every))
@@ -429,9 +447,9 @@ def cost_plot(name, front, relative, scheme_looks, stamp):
         add_legend(canvas, handles)
         described = "; ".join(f"{scheme}: {words or 'no judgement'}" for (scheme, _), words in zip(curves, judgements))
         title = f"Error of {front['field']} against {cost_title}, {front['group']}"
-        svg = finish(canvas, name, title, f"Log-log plot. {described}.", stamp)
+        drawing = finish(canvas, name, title, f"Log-log plot. {described}.", stamp)
     return Picture(name, f"{sentence(error_label(front['field'], front['norm'], relative))} against {cost_title}. "
-                         "Down and left is better; bold and filled is on the front.", svg)
+                         "Down and left is better; bold and filled is on the front.", drawing)
 
 
 # ------------------------------------------------------------------------------------------------ consistency sums
@@ -455,9 +473,9 @@ def consistency(name, sums, stamp):
         axes.set_xlim(x_limits)
         axes.set_ylim(y_limits)
         add_legend(canvas, handles)
-        svg = finish(canvas, name, "Consistency sums against h/dx", f"Log-log plot, misfits from {min(values):.2e} to {max(values):.2e}.", stamp)
+        drawing = finish(canvas, name, "Consistency sums against h/dx", f"Log-log plot, misfits from {min(values):.2e} to {max(values):.2e}.", stamp)
     return Picture(name, "Largest component of |h Σ V ∇W| (zeroth, filled) and of |Σ V (rⱼ − r) ⊗ ∇W − I| (first, open) over "
-                         "arbitrary points. Integrals would give 0.", svg)
+                         "arbitrary points. Integrals would give 0.", drawing)
 
 
 def consistency_curve(axes, rows, key, look):

@@ -44,6 +44,15 @@ NORMS = [
               "(log-log interpolation, no extrapolation)."),
 ]
 
+OTHER_WORDS = [
+    ("CHANGED, UNCHANGED", "Whether anything differs from the baseline that the gate does not forgive: an error level, an order, a demand, a verdict, "
+                           "a count of work, or something that is missing. Round-off, run time and what is new are forgiven."),
+    ("margin", "Of a PASS: how far the fitted order and that of the finest pair are from the nearest edge of the expected band."),
+    ("agrees, DISAGREES", "Whether our runs bear out what a publication prints; each claim says how it is judged."),
+    ("caught", "Of a seeded fault, which is a small wrong edit of the source: some check of the gate failed, and so saw it."),
+    ("clean, MODIFIED", "Whether the source that was built is exactly that of the revision, or differs from it."),
+]
+
 OPERATOR_WORDS = [
     ("h/dx fixed", "Both go to zero together: the smoothing error falls, and what disorder does to the sums stays or grows."),
     ("h fixed", "dx goes to zero alone: the error against the operator's own limit, so that the smoothing error takes no part."),
@@ -104,7 +113,8 @@ def fit_line(study):
     fit, expected = study["fit"], study["expected"]
     if fit["order"] is None:
         if early_ends(study):
-            return f"fit: none; {len(early_ends(study))} of {len(study['samples'])} rungs ended early"
+            known = ", as expected" if expects_early_end(study) else ""
+            return f"fit: none; {len(early_ends(study))} of {len(study['samples'])} rungs ended early{known}"
         if is_short(study):
             verbs = ("shows", "bears") if len(study["samples"]) == 1 else ("show", "bear")
             return f"fit: none; {plural(len(study['samples']), 'rung')} {verbs[0]} errors, but {verbs[1]} no order verdict"

@@ -56,7 +56,7 @@ def figure(name, group, scheme_looks, stamp):
     labels = [label(run) for run in runs]
     errors, excesses = [error_points(run) for run in runs], [points(run, speed_excess) for run in runs]
     with matplotlib.rc_context({**figures.STYLE, "svg.hashsalt": name}):
-        canvas, (upper, lower) = figures.new_canvas(f"{figures.shorten(group.label, 40)}: over time, n = {n}", 2, figures.line_count(labels))
+        canvas, (upper, lower) = figures.new_canvas(figures.heading(group.label, f"over time, n = {n}"), 2, figures.line_count(labels))
         every = [error for curve in errors for _, error in curve]
         highest = min(max(every), max(HIGHEST_ERROR, min(every)))
         upper.set_yscale("log")
@@ -81,9 +81,9 @@ def figure(name, group, scheme_looks, stamp):
         figures.add_legend(canvas, handles)
         described = "; ".join(f"{run['scheme']}: error {curve[-1][1]:.2e} at t = {curve[-1][0]:.3g} s"
                               + ("" if run["survived"] else ", where it ended early") for run, curve in zip(runs, errors))
-        svg = figures.finish(canvas, name, f"Error over time, {group.label}", f"At n = {n}. {described}.", stamp)
+        drawing = figures.finish(canvas, name, f"Error over time, {group.label}", f"At n = {n}. {described}.", stamp)
     clipped = any(not low <= excess <= high for curve in excesses for _, excess in curve)
-    return figures.Picture(name, caption(group, n, runs, max(every) > highest, clipped), svg)
+    return figures.Picture(name, caption(group, n, runs, max(every) > highest, clipped), drawing)
 
 
 def excess_limits(runs, curves):

@@ -80,12 +80,15 @@ class Workbench:
     def of(self, kind, name):
         return [entry for entry in self.results[kind] if entry["operator"] == name]
 
+    @staticmethod
+    def place(study):
+        return f"{integer(study['dimension'])}-D {ladder_label(study)}"
+
     def findings(self):
-        return [finding for study in self.studies for finding in
-                findings.verdict_finding(f"{study['scheme']}, {study['dimension']}-D {ladder_label(study)}", study)]
+        return [finding for study in self.studies for finding in findings.verdict_finding(f"{study['scheme']}, {self.place(study)}", study)]
 
     def waiver_rows(self):
-        return [{"group": f"{study['dimension']}-D {ladder_label(study)}", "scheme": study["scheme"], "field": study["field"],
+        return [{"group": self.place(study), "scheme": study["scheme"], "field": study["field"],
                  "verdict": study["fit"]["verdict"], "waiver": study["fit"]["waiver"]} for study in self.studies if study["fit"]["waiver"]]
 
     def summary(self):
@@ -165,9 +168,9 @@ class Workbench:
                     studies = [study for study in of_kind if (study["dimension"], study["arrangement"], study["path"])
                                == (dimension, arrangement, path)]
                     label = f"{dimension}-D {arrangement}, {path}"
-                    drawn.append(studies and self.page.draw(figures.convergence(
-                        self.page.figure_names.unique("operators", kind, label), label, kind, studies, looks,
-                        self.stamp(studies), "dx")))
+                    drawn.append(studies and self.page.draw(
+                        figures.convergence, self.page.figure_names.unique("operators", kind, label), label, kind, studies, looks,
+                        self.stamp(studies), "dx"))
         return list(filter(None, drawn))
 
     def stamp(self, entries):
@@ -177,7 +180,7 @@ class Workbench:
         known = as_front(front)
         looks = figures.looks(curve["scheme"] for curve in known["curves"])
         name = self.page.figure_names.unique("operators", front["approximates"], "error-against-" + front["cost"])
-        return {"plot": self.page.draw(figures.cost_plot(name, known, True, looks, self.stamp([front]))),
+        return {"plot": self.page.draw(figures.cost_plot, name, known, True, looks, self.stamp([front])),
                 "table": self.page.keep(front_table(self.page.table_names, known, "operator")),
                 "file": front["result"]["file"] if len(self.results["files"]) > 1 else ""}
 
@@ -204,7 +207,7 @@ class Workbench:
                       Column("passes", "passes", shown=False)] + file_column(checks), rows, context=name) if checks else None
 
     def ladder_view(self, study):
-        label = f"{integer(study['dimension'])}-D {ladder_label(study)}"
+        label = self.place(study)
         parts = filter(None, [study["scheme"][len(study["operator"]) + 2:], study["tier_matters"] and f"{study['tier']} tier"])
         label += "".join(f", {part}" for part in parts)
         table = ladder_table(self.page.table_names.unique("operators", study["operator"], label), f"relative errors, {label}",

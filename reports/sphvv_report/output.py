@@ -14,7 +14,7 @@ def write_files(folder, files):
         path = os.path.join(folder, name)
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with open(path, "wb") as stream:
-            stream.write(content.encode("utf-8"))
+            stream.write(content if isinstance(content, bytes) else content.encode("utf-8"))
             stream.flush()
             os.fsync(stream.fileno())  # a full disk may only show here
 
@@ -22,7 +22,7 @@ def write_files(folder, files):
 def is_ours(name):
     """Whether a line of a manifest names a file that a report may have written."""
     parts = name.split("/")
-    return name == "index.html" or (len(parts) == 2 and parts[0] in ("tables", "figures") and parts[1] not in ("", ".", ".."))
+    return name in ("index.html", "guide.tex") or (len(parts) == 2 and parts[0] in ("tables", "figures") and parts[1] not in ("", ".", ".."))
 
 
 def stale_files(folder, files):
@@ -65,7 +65,7 @@ def missing_ancestors(folder):
 
 
 def write_report(folder, files):
-    """Writes {relative name: text} and a manifest into the folder, which is made if need be. Raises OSError."""
+    """Writes {relative name: text or bytes} and a manifest into the folder, which is made if need be. Raises OSError."""
     folder = os.path.abspath(folder)
     made = missing_ancestors(folder)
     complete = dict(files)

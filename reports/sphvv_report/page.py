@@ -1,16 +1,19 @@
 """The page: gathers groups, tables and figures from merged results and renders them into one self-contained HTML file."""
 
+import multiprocessing
 import os
 from dataclasses import dataclass
 
 import jinja2
 from markupsafe import Markup
 
-from . import budgets, checks, figures, findings, histories, numbers, particles, profiles, stability
+from . import budgets, changes, checks, figures, findings, guide, histories, nights, numbers, overview, particles, profiles, publications, stability
 from .ladders import NORM_COLUMNS, front_table, ladder_table
 from .operators import Workbench
 from .tables import Column, Names, Span, Table, breakable
 
+WORST = 2  # severity of the last findings that call for somebody; those beyond it are known and accepted
+MOST_FINDINGS, MOST_REASONS = 25, 4  # on the first screen; reasons of one finding
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 
@@ -65,7 +68,7 @@ def has_spread(study):
 
 def matrix_table(names, groups):
     """The verdict matrix, one line a study."""
-    rows = [{"group": study["group"], "scheme": study["scheme"], "field": study["field"], "tier": study["tier"],
+    rows = [{"anchor": study["anchor"], "status_key": findings.status(study), "group": study["group"], "scheme": study["scheme"], "field": study["field"], "tier": study["tier"],
              "verdict": study["fit"]["verdict"], "status": findings.STATUSES[findings.status(study)][0],
              "order": study["fit"]["order"], "ci95": study["fit"]["ci95"],
              "low": study["expected"]["low"], "high": study["expected"]["high"],
@@ -73,7 +76,7 @@ def matrix_table(names, groups):
              "reason": study["fit"]["reason"], "waiver": study["fit"]["waiver"]}
             for group in groups for study in group.studies]
     columns = [Column("group", "case and settings"), Column("scheme", "scheme"), Column("field", "field"),
-               Column("tier", "tier", shown=False), Column("status", "verdict"), Column("order", "order", "order"),
+               Column("tier", "tier", shown=False), Column("status", "verdict", "verdict"), Column("order", "order", "order"),
                Column("ci95", "± 95 %", "order"), Column("low", "expected from", "order"), Column("high", "to", "order"),
                Column("rungs", "rungs", "integer"), Column("ended_early", "ended early", "integer"),
                Column("verdict", "verdict", shown=False), Column("reason", "reason", shown=False),
@@ -240,33 +243,6 @@ def settings_table(names, group, runs):
                  context=group.label)
 
 
-def provenance_table(names, results):
-    """What made the numbers, one column of values a result file."""
-    keys = [("file", "file"), ("command", "command"), ("version", "sphvv"), ("revision", "revision"), ("tree", "source tree"),
-            ("compiler", "compiler"), ("flags", "flags"), ("build_type", "build type"), ("cpu", "processor"), ("threads", "threads"),
-            ("libraries", "libraries"), ("started", "started (UTC)"), ("seconds", "took [s]")]
-    rows = []
-    for key, title in keys:
-        values = [provenance_value(result, key) for result in results]
-        if any(values):
-            rows.append({"name": title, **{f"file:{index}": value for index, value in enumerate(values)}})
-    columns = [Column(f"file:{index}", result["file"]) for index, result in enumerate(results)]
-    return Table(names.unique("provenance"), "What made the numbers", [Column("name", "what")] + columns, rows[1:], style="prose")
-
-
-def provenance_value(result, key):
-    provenance = result["provenance"]
-    if key in ("file", "command"):
-        return result[key]
-    if key == "tree":
-        return "clean" if provenance["tree_clean"] else "MODIFIED: differs from the revision"
-    if key == "libraries":
-        return ", ".join(f"{name} {numbers.general(version)}" for name, version in sorted(provenance["libraries"].items()))
-    if key == "seconds":
-        return "" if provenance["seconds"] is None else numbers.significant(provenance["seconds"])
-    return "" if provenance[key] is None else numbers.general(provenance[key])
-
-
 def waivers_table(names, waived, more):
     """The studies with a waiver, and `more` rows of the same kind."""
     rows = [{"group": study["group"], "scheme": study["scheme"], "field": study["field"], "verdict": study["fit"]["verdict"],
@@ -294,10 +270,14 @@ def stamp_of(results):
 
 
 class Builder:
-    """Collects what the template shows, and every table and picture that becomes a file."""
+    """Collects what the template shows, and every table and picture that becomes a file.
 
-    def __init__(self, results):
-        self.results = results
+    drawn: the finished pictures by name; without them the builder only plans what has to be drawn.
+    """
+
+    def __init__(self, results, comparisons=(), history=(), drawn=None):
+        self.results, self.comparisons, self.nights = results, comparisons, history
+        self.drawn, self.jobs = drawn, []
         self.groups = findings.in_groups(results)
         self.looks = figures.looks(findings.all_schemes(results))
         self.table_names, self.figure_names = Names(), Names()
@@ -309,7 +289,12 @@ class Builder:
             self.tables.append(table)
         return table
 
-    def draw(self, picture):
+    def draw(self, make, name, *arguments):
+        """The picture that make(name, *arguments) draws, None where it has nothing to show. A builder that only plans takes the job down."""
+        if self.drawn is None:
+            self.jobs.append((make, name, *arguments))
+            return figures.Picture(name, "", figures.Drawing("", b""))
+        picture = self.drawn[name]
         if picture is not None:
             self.pictures.append(picture)
         return picture
@@ -339,12 +324,13 @@ class Builder:
             "label": group.label, "anchor": group.anchor, "case": case, "group": group,
             "parameters": self.keep(parameters_table(self.table_names, group, case)),
             "comparison": None if in_time else self.keep(comparison_table(self.table_names, group)),
-            "convergence": [picture for field in group.fields if (picture := self.draw(figures.convergence(
-                self.figure_names.unique(group.label, field, "convergence"), group.label, field, group.of_field(field),
-                self.looks, stamp, "dt" if in_time else "h")))],
+            "convergence": [picture for field in group.fields if (picture := self.draw(
+                figures.convergence, self.figure_names.unique(group.label, field, "convergence"), group.label, field, group.of_field(field),
+                self.looks, stamp, "dt" if in_time else "h"))],
             "history": None if in_time else self.history_view(group, stamp),
             "particles": [] if in_time else self.particle_pictures(group, stamp),
-            "profiles": [self.draw(picture) for picture in profiles.pictures(self.figure_names.unique, group, self.looks, stamp)],
+            "profiles": [self.draw(profiles.picture, self.figure_names.unique(group.label, field, "profile"), group, field, runs, self.looks, stamp)
+                         for runs in [profiles.runs_with_profiles(group)] for field in profiles.fields(runs)],
             "budget": None if in_time else self.keep(budgets.table(self.table_names, group, dimension)),
             "schemes": [self.scheme_view(group, scheme, detailed.get(scheme)) for scheme in group.schemes],
             "fronts": [self.front_view(group, front) for front in group.fronts],
@@ -357,12 +343,12 @@ class Builder:
         """Error over time; None where no run has a history."""
         table = self.keep(histories.table(self.table_names, group))
         name = self.figure_names.unique(group.label, "error-over-time")
-        return table and {"table": table, "plot": self.draw(histories.figure(name, group, self.looks, stamp))}
+        return table and {"table": table, "plot": self.draw(histories.figure, name, group, self.looks, stamp)}
 
     def particle_pictures(self, group, stamp):
-        made = [draw(self.figure_names.unique(group.label, "particles", field), group, stamp)
-                for field, draw in (("speed", particles.by_speed), ("pressure", particles.by_pressure))]
-        return [self.draw(picture) for picture in made if picture]
+        made = [self.draw(make, self.figure_names.unique(group.label, "particles", field), group, stamp)
+                for field, make in (("speed", particles.by_speed), ("pressure", particles.by_pressure))]
+        return [picture for picture in made if picture]
 
     def scheme_view(self, group, scheme, run):
         return {"name": scheme, "studies": [self.study_view(study) for study in group.of_scheme(scheme)], "run": run,
@@ -377,7 +363,7 @@ class Builder:
         """A front with its plot and its table. With several result files, each front says whose it is."""
         relative = any(sample["relative"] for study in group.of_field(front["field"]) for sample in study["samples"])
         name = self.figure_names.unique(group.label, front["field"], "error-against-" + front["cost"])
-        return {"front": front, "plot": self.draw(figures.cost_plot(name, front, relative, self.looks, stamp_of([front["result"]]))),
+        return {"front": front, "plot": self.draw(figures.cost_plot, name, front, relative, self.looks, stamp_of([front["result"]])),
                 "table": self.keep(front_table(self.table_names, front, "scheme")),
                 "file": front["result"]["file"] if len(self.results["files"]) > 1 else ""}
 
@@ -395,23 +381,50 @@ class Builder:
             for study in group.cell(scheme, field)] for field in fields]} for scheme in group.schemes]} for group in self.groups]
         return {"fields": fields, "rows": rows}
 
+    def overview_view(self):
+        """Cases by schemes, where there are too many ladders to show each on the first screen."""
+        if not overview.is_large(self.groups):
+            return None
+        drawn = overview.matrix(self.groups)
+        return {**drawn, "table": self.keep(overview.matrix_table(self.table_names, drawn))}
+
+    def judged_studies(self):
+        """Studies of schemes and of operators, with the words that say where each stands."""
+        for study in self.workbench.studies:
+            study["where"] = self.workbench.place(study)
+        return [dict(study, where=study["group"]) for group in self.groups for study in group.studies] + self.workbench.studies
+
+    def contents(self):
+        """The chapters on groups by case: (case, [(anchor, label without the case, worst status)])."""
+        short = lambda group: group.label.removeprefix(group.case).strip(" /") or "as it is"
+        return [(case, [(group.anchor, short(group), overview.cell(group.studies)["status"]) for group in self.groups if group.case == case])
+                for case in findings.unique(group.case for group in self.groups)]
+
     def view(self):
         """Everything the template needs."""
         self.name_studies()
         found = sorted(findings.findings(self.groups) + self.workbench.findings() + checks.findings(self.results),
                        key=lambda finding: finding.severity)
         more_waivers = self.workbench.waiver_rows() + checks.waiver_rows(self.results)
-        overview = {"table": self.keep(matrix_table(self.table_names, self.groups)) if self.groups else None,
-                    "matrix": self.matrix_view(), "operator_matrices": self.workbench.matrices(), "findings": found,
-                    "provenance": self.keep(provenance_table(self.table_names, self.results["files"])),
+        front = {"table": self.keep(matrix_table(self.table_names, self.groups)) if self.groups else None,
+                    "overview": self.overview_view(), "matrix": self.matrix_view(), "operator_matrices": self.workbench.matrices(),
+                    "findings": [finding for finding in found if finding.severity <= WORST],
+                    "known_findings": [finding for finding in found if finding.severity > WORST],
+                    "misses": self.keep(overview.misses_table(self.table_names, self.judged_studies())),
+                    "changes": changes.view(self), "provenance_lines": overview.provenance_lines(self.results["files"]),
+                    "provenance": [self.keep(table) for table in overview.provenance_tables(self.table_names, self.results["files"]) if table],
                     "waivers": self.keep(waivers_table(self.table_names, findings.waivers(self.groups), more_waivers))}
         clauses = [self.workbench.summary(), *checks.summary(self.results)]
+        chapters = {"publications": publications.view(self), "nights": nights.view(self), "checks": checks.view(self)}
+        needless = {word for word, is_needed in (("CHANGED, UNCHANGED", front["changes"]), ("agrees, DISAGREES", chapters["publications"]),
+                                                 ("caught", chapters["checks"]["faults"]), ("margin", front["misses"])) if not is_needed}
         return {"title": "Verification of " + listed(self.subjects()), "summary": findings.summary(self.groups, found),
                 "checks_summary": "; ".join(filter(None, clauses)),
-                "stamp": stamp_of(self.results["files"]), "files": self.results["files"], **overview,
+                "stamp": stamp_of(self.results["files"]), "files": self.results["files"], **front,
+                "cases": self.contents(), "is_large": overview.is_large(self.groups),
                 "groups": [self.group_view(group) for group in self.groups],
-                "operators": self.workbench.view(), "checks": checks.view(self), "stability": stability.view(self),
-                "statuses": findings.STATUSES, "glossary": findings.GLOSSARY, "norms": findings.NORMS,
+                "operators": self.workbench.view(), **chapters, "stability": stability.view(self),
+                "most_findings": MOST_FINDINGS, "most_reasons": MOST_REASONS, "statuses": findings.STATUSES, "glossary": findings.GLOSSARY, "norms": findings.NORMS, "other_words": [entry for entry in findings.OTHER_WORDS if entry[0] not in needless],
                 "operator_words": findings.OPERATOR_WORDS}
 
     def subjects(self):
@@ -432,6 +445,26 @@ def listed(words):
     return words[0] if len(words) == 1 else ", ".join(words[:-1]) + " and " + words[-1]
 
 
+JOBS = []  # what draw_job draws; processes made by forking have it without a copy being sent
+
+
+def draw_job(index):
+    make, name, *arguments = JOBS[index]
+    return make(name, *arguments)
+
+
+def draw_all(jobs):
+    """The finished pictures by name, drawn side by side by as many processes as there are processors."""
+    JOBS[:] = jobs
+    processes = min(os.cpu_count() or 1, len(jobs) // 8)
+    if processes > 1:
+        with multiprocessing.get_context("fork").Pool(processes) as pool:
+            pictures = pool.map(draw_job, range(len(jobs)), chunksize=4)
+    else:
+        pictures = [draw_job(index) for index in range(len(jobs))]
+    return {job[1]: picture for job, picture in zip(jobs, pictures)}
+
+
 def render(view):
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, undefined=jinja2.StrictUndefined,
                                      trim_blocks=True, lstrip_blocks=True)
@@ -447,15 +480,19 @@ def render(view):
     return environment.get_template("page.html.j2").render(style=style, **view)
 
 
-def build_report(results):
-    """All files of the report of merged results."""
-    builder = Builder(results)
-    files = {"index.html": render(builder.view())}
+def build_report(results, comparisons=(), history=()):
+    """All files of the report of merged results, with comparisons (changes.read_changes) and nights (nights.read_history) to show beside them."""
+    plan = Builder(results, comparisons, history)
+    plan.view()
+    builder = Builder(results, comparisons, history, draw_all(plan.jobs))
+    view = builder.view()
+    files = {"index.html": render(view), "guide.tex": guide.render(view)}
     for table in builder.tables:
         files[f"tables/{table.name}.csv"] = table.to_csv()
         files[f"tables/{table.name}.md"] = table.to_markdown()
         files[f"tables/{table.name}.tex"] = table.to_latex()
     for picture in builder.pictures:
         files[f"figures/{picture.name}.svg"] = '<?xml version="1.0" encoding="UTF-8"?>\n' + picture.svg
+        files[f"figures/{picture.name}.pdf"] = picture.drawing.pdf
     studies = [study for group in builder.groups for study in group.studies]
     return Report(files, findings.counts(studies + builder.workbench.studies), checks.counts(results))

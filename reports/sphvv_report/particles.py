@@ -62,7 +62,7 @@ def panels(group):
 
 
 def draw(name, group, shown, field, colours, limits, stamp):
-    """The SVG: a grid of square panels over one colour bar."""
+    """The drawing: a grid of square panels over one colour bar."""
     is_reseeded = len({panel.run["seed"] for panel in shown}) > 1
     titles = [panel.title(is_reseeded) for panel in shown]
     columns = min(COLUMNS, len(shown))
@@ -74,7 +74,7 @@ def draw(name, group, shown, field, colours, limits, stamp):
     norm = matplotlib.colors.Normalize(*limits)
     with matplotlib.rc_context({**figures.STYLE, "svg.hashsalt": name}):
         canvas = Canvas(figsize=(width, height))
-        canvas.text(0.08 / width, 1 - 0.13 / height, figures.plain(f"{figures.shorten(group.label, 40)}: {field}, particles"),
+        canvas.text(0.08 / width, 1 - 0.13 / height, figures.plain(figures.heading(group.label, f"{field}, particles")),
                     ha="left", va="center", fontsize=9, fontweight="bold")
         for index, (panel, title) in enumerate(zip(shown, titles)):
             row, column = divmod(index, columns)
@@ -123,9 +123,9 @@ def by_speed(name, group, stamp):
     source = "the largest exact speed at these times"
     if not highest:
         highest, source = percentile([panel.speed for panel in shown], 99.5), "the 99.5 percentile of all speeds"
-    svg = draw(name, group, shown, "speed", "viridis", (0.0, highest or 1.0), stamp)
+    drawing = draw(name, group, shown, "speed", "viridis", (0.0, highest or 1.0), stamp)
     return figures.Picture(name, f"Particles by speed at the end of each run{domain(shown)}. The scale ends at {source}, "
-                                 f"{numbers.significant(highest)} m/s.{remarks(shown, 'speed')}", svg)
+                                 f"{numbers.significant(highest)} m/s.{remarks(shown, 'speed')}", drawing)
 
 
 def by_pressure(name, group, stamp):
@@ -137,10 +137,10 @@ def by_pressure(name, group, stamp):
     largest = percentile([panel.pressure for panel in yardstick], 99)
     of = yardstick[0].place + (", whose pressure error is smallest" if yardstick[0].mark.get("l2_pressure") is not None else "") \
         if len(yardstick) == 1 else "all panels"
-    svg = draw(name, group, shown, "pressure", "coolwarm", (-largest or -1.0, largest or 1.0), stamp)
+    drawing = draw(name, group, shown, "pressure", "coolwarm", (-largest or -1.0, largest or 1.0), stamp)
     return figures.Picture(name, f"Particles by pressure at the end of each run, the mean of each panel removed. The scale ends at "
                                  f"±{numbers.significant(largest)} Pa, the 99th percentile of |p| of {of}; pressures beyond it have the "
-                                 f"colour of its ends.{remarks(shown, 'pressure')}", svg)
+                                 f"colour of its ends.{remarks(shown, 'pressure')}", drawing)
 
 
 def smoothest(shown):

@@ -6,9 +6,10 @@ from matplotlib.lines import Line2D
 from . import figures, numbers
 
 MOST_POINTS = 400  # of a scheme: more would only make the file larger
-TITLES = {"velocity_x": "velocity u [m/s]", "pressure": "pressure p [Pa]", "density": "density [kg/m3]",
+DOTS_PER_INCH = 200  # of the particles, which are pixels: thousands of vectors would weigh a megabyte
+TITLES = {"velocity_x": "velocity u [m/s]", "pressure": "pressure p [Pa]", "density": "density [kg/m³]",
           "mean_velocity_x": "mean velocity u [m/s]", "mean_velocity_gradient": "mean du/dy [1/s]",
-          "mean_eddy_viscosity": "mean eddy viscosity [m2/s]", "impulse": "impulse [Pa s]"}
+          "mean_eddy_viscosity": "mean eddy viscosity [m²/s]", "impulse": "impulse [Pa s]"}
 
 
 def runs_with_profiles(group):
@@ -37,10 +38,8 @@ def exact_curve(profiles):
                    if y is not None and value is not None})
 
 
-def pictures(make_name, group, scheme_looks, stamp):
-    runs = runs_with_profiles(group)
-    fields = list(dict.fromkeys(profile["field"] for run in runs for profile in run["profiles"]))
-    return [picture(make_name(group.label, field, "profile"), group, field, runs, scheme_looks, stamp) for field in fields]
+def fields(runs):
+    return list(dict.fromkeys(profile["field"] for run in runs for profile in run["profiles"]))
 
 
 def picture(name, group, field, runs, scheme_looks, stamp):
@@ -48,7 +47,7 @@ def picture(name, group, field, runs, scheme_looks, stamp):
     labels = [figures.named(run["scheme"], f"n = {numbers.integer(run['n'])}") for run, _ in shown]
     title = TITLES.get(field, field.replace("_", " "))
     with matplotlib.rc_context({**figures.STYLE, "svg.hashsalt": name}):
-        canvas, [axes] = figures.new_canvas(f"{figures.shorten(group.label, 40)}: {field.replace('_', ' ')}", 1,
+        canvas, [axes] = figures.new_canvas(figures.heading(group.label, field), 1,
                                             figures.line_count(labels) + 1)
         exact = exact_curve([profile for _, profile in shown])
         axes.plot([value for _, value in exact], [y for y, _ in exact], color="#222222", linewidth=1.1, zorder=2)
@@ -57,14 +56,14 @@ def picture(name, group, field, runs, scheme_looks, stamp):
             look = scheme_looks[run["scheme"]]
             points = thinned(profile)
             axes.plot([value for _, value in points], [y for y, _ in points], linestyle="none", marker=look.marker, color=look.colour,
-                      markersize=3, markeredgewidth=0.4, markeredgecolor="white", alpha=0.8, zorder=3)
+                      markersize=3, markeredgewidth=0.4, markeredgecolor="white", alpha=0.8, zorder=3, rasterized=True)
             handles.append(Line2D([], [], linestyle="none", color=look.colour, marker=look.marker, markersize=4.5,
                                   label=figures.plain_lines(text)))
         figures.label_above(axes, "coordinate across the flow [m]")
         axes.set_xlabel(title)
         figures.add_legend(canvas, handles)
         described = f"{len(shown)} schemes, {sum(len(thinned(profile)) for _, profile in shown)} particles shown"
-        svg = figures.finish(canvas, name, f"{field}, {group.label}", described, stamp)
+        drawing = figures.finish(canvas, name, f"{field}, {group.label}", described, stamp, DOTS_PER_INCH)
     ended = [run["scheme"] for run, _ in shown if not run["survived"]]
     text = f"{title[0].upper()}{title[1:]} of the particles at the end of the finest run that kept them, over the exact curve."
-    return figures.Picture(name, text + (f" Ended early: {', '.join(ended)}." if ended else ""), svg)
+    return figures.Picture(name, text + (f" Ended early: {', '.join(ended)}." if ended else ""), drawing)

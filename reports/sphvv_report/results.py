@@ -399,6 +399,8 @@ def check_result(tree):
 def name_variants(tree):
     """Calls variants of schemes by the short names that the file has for them, group by group."""
     names = {(case["group"], variant["scheme"]): variant["name"] for case in tree["cases"] for variant in case["variants"]}
+    for study in tree["studies"]:
+        study["base_scheme"] = study["scheme"].split(":")[0]
     for kind in ("studies", "runs", "fronts"):
         for entry in tree[kind]:
             for named in [entry] if kind != "fronts" else entry["curves"] + entry["rows"]:

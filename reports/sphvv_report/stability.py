@@ -112,10 +112,10 @@ def map_picture(name, chart, stamp):
         axes.set_xlabel(figures.plain(chart["x_name"]))
         figures.label_above(axes, chart["y_name"])
         figures.add_legend(canvas, handles)
-        svg = figures.finish(canvas, name, f"Stability of {chart['scheme']}",
+        drawing = figures.finish(canvas, name, f"Stability of {chart['scheme']}",
                              f"Map over {chart['x_name']} and {chart['y_name']}: {int(grows.sum())} of {grows.size} points grow.", stamp)
     return figures.Picture(name, f"{chart['scheme']}: growth of small disturbances of a square lattice, {shape[1]} × {shape[0]} runs. "
-                                 f"{chart['reason']}.{missed}", svg)
+                                 f"{chart['reason']}.{missed}", drawing)
 
 
 def draw_steps(axes, x, y, flags, **style):
@@ -140,5 +140,5 @@ def view(page):
             "extreme_matrix": page.keep(extreme_matrix(page.table_names, scenes)) if scenes else None,
             "extreme": page.keep(extreme_table(page.table_names, scenes)) if scenes else None,
             "limits": page.keep(limits_table(page.table_names, limits)) if limits else None,
-            "maps": [{"plot": page.draw(map_picture(page.figure_names.unique(chart["study"], chart["scheme"]), chart, page.stamp([chart["result"]]))),
+            "maps": [{"plot": page.draw(map_picture, page.figure_names.unique(chart["study"], chart["scheme"]), chart, page.stamp([chart["result"]])),
                       "table": page.keep(map_table(page.table_names, chart))} for chart in maps]}

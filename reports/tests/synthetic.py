@@ -470,5 +470,41 @@ def stability():
             **conditioning()}
 
 
+def comparison(change="verdict", **more):
+    """What `sphvv compare BASELINE FILE --json` writes, with one difference that fails the gate and one that does not."""
+    row = {"subject": "isph_dfs", "where": "taylor_green re=100, velocity, n = 80", "what": "verdict", "baseline": "PASS", "current": "FAIL", "factor": 1.0}
+    return {"format": "sphvv-comparison", "format_version": 1,
+            "baseline": {"file": "taylor_green.json", "revision": "0123456789abcdef", "started": ""},
+            "current": {"file": "results.h5", "revision": PROVENANCE["revision"], "started": PROVENANCE["started"]},
+            "compared": 210, "bitwise_equal": 208, "fails": True,
+            "differences": [{"change": change, **row}, {"change": "run time", **row, "what": "seconds", "baseline": "1.0", "current": "1.2"}], **more}
+
+
+def nights(count=3, faulty=(1,)):
+    """Lines of a history: one ladder that keeps its error, and one whose error is ten times as large and its verdict FAIL in the `faulty` nights."""
+    ladder = {"group": "taylor_green re=100", "scheme": "isph_dfs", "ci95": 0.1, "waived": False, "n": 80, "pair_evaluations": 2e8,
+              "matrix_entries": 3e8, "seconds": 4.0}
+    lines = []
+    for night in range(count):
+        broken = night in faulty
+        rows = [{**ladder, "field": "velocity", "order": 0.2 if broken else 1.08, "verdict": "FAIL" if broken else "PASS", "l2": 0.11 if broken else 0.011},
+                {**ladder, "field": "pressure", "order": 0.95, "verdict": "PASS", "l2": 0.04},
+                {"group": "stability_limits", "scheme": "wcsph", "field": "stability/acoustic", "verdict": "PASS", "l2": 4.5}]
+        lines.append({"date": f"2025-11-2{night}T03:00:00+00:00", "tier": "nightly", "revision": f"{night}" * 40, "seconds": 3600.0 + night, "rows": rows})
+    return lines
+
+
+def many(settings=9):
+    """More ladders than a first screen can show one by one: variants of three schemes in so many settings of two cases."""
+    builder = Builder()
+    for case in ("taylor_green", "abc_flow"):
+        for number in range(settings):
+            for scheme in ("wcsph", "isph_dfs", "isph_dfs:shift_correction=none"):
+                verdict = "FAIL" if (case, number, scheme) == ("abc_flow", 1, "wcsph") else "PASS"
+                builder.add(case, f"{case}/setting_{number}", scheme, [20, 28, 40, 56], 1.5, 0.03,
+                            fields={"velocity": dict(low=1.0 + 0.01 * number, high=2.5, verdict=verdict, reason="as made up")})
+    return builder.tree
+
+
 if __name__ == "__main__":
     write(sys.argv[1], {"variants": variants}[sys.argv[2]]() if len(sys.argv) > 2 else realistic())

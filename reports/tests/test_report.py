@@ -7,14 +7,17 @@ import io
 import json
 import os
 import re
+import shutil
+import subprocess
 import tempfile
 import unittest
 import xml.dom.minidom
 
 import synthetic
-from sphvv_report import budgets, figures, findings, numbers, output, results
+from sphvv_report import budgets, figures, findings, nights, numbers, output, overview, results
 from sphvv_report.__main__ import main
-from sphvv_report.tables import Column, Names, Table, latex_text, markdown_text
+from sphvv_report.tables import (LETTER, SIZES, TABCOLSEP, TEXT_WIDTH, Column, Names, Table, latex_layout, latex_text,
+                                 markdown_text)
 
 VOID = {"meta", "link", "br", "wbr", "img", "input", "hr"}
 HOSTILE = '<script>alert("1")</script> & 50% of $x_1$ {#~^\\} | `c`'
@@ -143,7 +146,9 @@ class WholePage:
         self.assertEqual(len(names), sum(tag == "table" for tag, _ in self.page.elements))
 
     def test_every_picture_is_on_the_page_and_on_disk(self):
-        pictures = {name: content.decode("utf-8") for name, content in self.files.items() if name.startswith("figures/")}
+        pictures = {name: content.decode("utf-8") for name, content in self.files.items() if name.startswith("figures/") and name.endswith(".svg")}
+        twins = {name for name, content in self.files.items() if name.startswith("figures/") and content.startswith(b"%PDF-")}
+        self.assertEqual(twins, {name[:-3] + "pdf" for name in pictures})
         self.assertEqual(len(pictures), sum(tag == "figure" for tag, _ in self.page.elements))
         self.assertEqual(len(pictures), self.pictures)
         for name, svg in pictures.items():
@@ -288,7 +293,7 @@ class Operators(WholePage, unittest.TestCase):
                       "undetermined", "Quinlan, Basa"):
             self.assertIn(words, text)
         self.assertIn('<details id="ladder__gradient_plain__2-D__square-h-dx-fixed" open>', self.source)
-        self.assertEqual(self.source.count("<details "), 12 + 1)  # ladders, and the properties that fail
+        self.assertEqual(len(re.findall("<details (?:id|open)", self.source)), 12 + 1)  # ladders, and the properties that fail
         rows = self.table("operators__gradient_renormalised__2-D-jittered-10-h-dx-fixed")
         self.assertEqual((rows[0]["n"], rows[0]["order_l2"], rows[0]["l2_spread"]), ("40", "", "0.02"))
         self.assertAlmostEqual(float(rows[0]["h_over_dx"]), 1.3)
@@ -305,10 +310,11 @@ class Operators(WholePage, unittest.TestCase):
         self.assertIn("gradient_plain,off the front,0,1.25,0.1,gradient_renormalised", self.files[front[0]].decode())
 
     def test_kernels(self):
-        text = self.section("kernels", "published_figures")
+        text = self.section("kernels", "consistency_sums")
         self.assertIn("9 of 10; FAILS smoothness any dimension", text)
-        self.assertIn("NOT REFUSED", text)
-        self.assertIn("0.6666667", text)
+        misprints = self.section("known_errors", "published_figures")
+        self.assertIn("NOT REFUSED", misprints)
+        self.assertIn("0.6666667", misprints)
         self.assertEqual(self.table("kernels")[1]["unit integral 3"], "1.0")
 
     def test_published_figures(self):
@@ -453,6 +459,8 @@ class Hostile(WithFolder):
         self.assertNotIn("script", {tag for tag, _ in page.elements})
         self.assertIn('<script>alert("1")</script>', page.all_text())
         for name, content in files.items():
+            if name.endswith(".pdf"):
+                continue
             text = content.decode("utf-8")
             if name.endswith(".svg"):
                 document = xml.dom.minidom.parseString(text)
@@ -478,7 +486,7 @@ class Hostile(WithFolder):
         for study in tree["studies"]:
             study["group"] = study["group"].replace("taylor_green", "../../" + "tg" * 80)
         files = self.report(tree)
-        self.assertTrue(all(re.fullmatch(r"(tables|figures)/[\w.-]+|index.html|manifest.txt", name) for name in files))
+        self.assertTrue(all(re.fullmatch(r"(tables|figures)/[\w.-]+|index.html|guide.tex|manifest.txt", name) for name in files))
         self.assertEqual(sorted(os.listdir(self.folder)), ["out", "results.h5"])
 
     def test_numbers_that_no_axis_can_show(self):
@@ -544,7 +552,7 @@ class Odd(WithFolder):
         one = {"time": 0.5, "x": [0.5], "y": [0.5], "box": [0.0, 1.0, 0.0, 1.0]}
         for value, kinds in ((None, ["speed"]), (float("inf"), ["speed"]), (0.0, ["pressure", "speed"]), (-1e308, ["pressure", "speed"])):
             files = self.changed(lambda run: run.update(picture={**one, "speed": [value], "pressure": [value]}))
-            self.assertEqual(sorted(name.split("__")[2][:-4] for name in files if "particles" in name), kinds)
+            self.assertEqual(sorted(name.split("__")[2][:-4] for name in files if "particles" in name and name.endswith(".svg")), kinds)
 
     def test_every_rung_ended_early(self):
         tree = synthetic.small()
@@ -574,7 +582,7 @@ class Odd(WithFolder):
         tree["provenance"]["tree_clean"] = False
         files = self.report(tree)
         self.assertIn("MODIFIED", files["index.html"].decode())
-        self.assertTrue(all("(modified)" in files[name].decode() for name in files if name.startswith("figures/")))
+        self.assertTrue(all("(modified)" in files[name].decode() for name in files if name.endswith(".svg")))
 
     def test_expected_end_that_did_not_come_is_a_finding(self):
         tree = synthetic.small()
@@ -625,9 +633,15 @@ class Odd(WithFolder):
         self.assertIn("thrown: a bug", files["tables/conditioning-checks.csv"].decode())
         for drawn, words in (("condition", "theory: lattice sums"), ("iterations", "their bound from the condition number")):
             self.assertIn(words, files[f"figures/conditioning__{drawn}.svg"].decode())
+        waived = {**synthetic.small(), **synthetic.stability()}
+        waived["extreme_rows"][0].update(waiver="no scheme can hold it")
+        text = Page(self.report(waived, "waived")["index.html"].decode()).all_text()
+        self.assertIn("0 of 1 extreme scenes end as they must, 1 waived", text)
+        self.assertNotIn("FAIL a single particle", text)
+        self.assertIn("no scheme can hold it", text[text.index("Waivers"):text.index("Provenance")])
         table = files["tables/stability-limits.csv"].decode()
         self.assertIn("isph_df", table)
-        picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map"))
+        picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map") and name.endswith(".svg"))
         self.assertIn("theory says otherwise", picture)
         self.assertIn("unstable by w'' p", picture)
         self.assertIn("w'' p < 0, is wrong at 2 of 6 points", text)
@@ -659,6 +673,154 @@ class Odd(WithFolder):
         tree["studies"][0]["fit"]["waiver"] = "left over from last year"
         text = Page(self.report(tree)["index.html"].decode()).all_text()
         self.assertIn("Waiver (not needed).", text)
+
+
+class Guide(WithFolder):
+    """The report for paper: what LaTeX makes of it."""
+
+    def test_compiles(self):
+        """Everything that a report can hold, twice through pdflatex: no error, nothing undefined, and nothing far out of the margin."""
+        if shutil.which("pdflatex") is None:
+            self.fail("pdflatex is missing; scripts/setup installs it")
+        tree = {**synthetic.workbench(), **synthetic.stability()}
+        tree.update({kind: synthetic.realistic()[kind] for kind in ("cases", "studies", "runs", "fronts")})
+        tree["claims"] = [{"group": "abc_flow", "id": HOSTILE, "text": "Σ V_j ∇W ≥ ½ α² – η·ν", "published": "1", "source": "§", "ours": "x" * 200, "agrees": False}]
+        self.report(tree)
+        with open(self.path("out", "guide.tex"), encoding="utf-8") as stream:
+            self.assertIn("taylor\\_", stream.read())
+        for _ in range(2):
+            done = subprocess.run(["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "guide.tex"], cwd=self.path("out"), capture_output=True,
+                                  text=True, errors="replace", check=False)
+            self.assertEqual(done.returncode, 0, done.stdout[-2000:])
+        with open(self.path("out", "guide.log"), encoding="utf-8", errors="replace") as stream:
+            log = stream.read()
+        self.assertNotIn("undefined", log)
+        self.assertNotIn("Missing character", log)
+        too_wide = [float(width) for width in re.findall(r"Overfull \\hbox \(([\d.]+)pt", log)]
+        self.assertLess(max(too_wide, default=0), 15)  # pt; 5 mm of a margin of 20
+
+    def test_takes_in_only_what_is_there(self):
+        files = self.report(synthetic.small())
+        named = re.findall(r"(?:tables|figures)/[\w.+-]+\.(?:tex|pdf)", files["guide.tex"].decode())
+        self.assertGreater(len(named), 20)
+        self.assertLessEqual(set(named), set(files))
+
+
+class Beside(WithFolder):
+    """What a report shows beside its result files: changes since a baseline, and nights."""
+
+    def setUp(self):
+        super().setUp()
+        self.source = synthetic.write(self.path("results.h5"), synthetic.small())
+
+    def written(self, name, *trees):
+        with open(self.path(name), "w", encoding="utf-8") as stream:
+            stream.writelines((tree if isinstance(tree, str) else json.dumps(tree)) + "\n" for tree in trees)
+        return self.path(name)
+
+    def page(self, *options):
+        self.assertEqual(run(self.source, "--out", self.path("out"), "--quiet", *options), (0, "", ""))
+        return all_files(self.path("out"))
+
+    def assert_refused(self, options, *words):
+        status, printed, error = run(self.source, "--out", self.path("out"), *options)
+        self.assertEqual((status, printed, len(error.splitlines())), (2, "", 1), error)
+        for word in words:
+            self.assertIn(word, error)
+        self.assertFalse(os.path.exists(self.path("out")))
+
+    def test_changes(self):
+        files = self.page("--changes", self.written("changes.json", synthetic.comparison()))
+        text = Page(files["index.html"].decode()).all_text()
+        self.assertIn("CHANGED results.h5 against taylor_green.json (revision 0123456789ab): 210 values compared, 208 bitwise equal; 1 verdict, 1 run time", text)
+        rows = list(csv.DictReader(io.StringIO(files["tables/changes.csv"].decode())))
+        self.assertEqual([(row["change"], row["baseline"], row["current"]) for row in rows], [("verdict", "PASS", "FAIL")])
+
+    def test_nothing_changed(self):
+        tree = synthetic.comparison(change="equal to round-off", fails=False)
+        text = Page(self.page("--changes", self.written("changes.json", tree))["index.html"].decode()).all_text()
+        self.assertIn("UNCHANGED", text)
+        self.assertIn("Nothing that the gate does not forgive", text)
+
+    def test_no_comparison_is_said(self):
+        self.assertIn("No comparison was given", Page(self.page()["index.html"].decode()).all_text())
+
+    def test_wrong_comparisons(self):
+        def changed(**more):
+            return self.written("changes.json", synthetic.comparison(**more))
+        current = synthetic.comparison()["current"]
+        self.assert_refused(["--changes", self.source], "results.h5", "not a comparison")
+        self.assert_refused(["--changes", self.path("none.json")], "none.json", "no such file")
+        self.assert_refused(["--changes", self.written("half.json", json.dumps(synthetic.comparison())[:200])], "half.json", "no JSON")
+        self.assert_refused(["--changes", changed(format="sphvv-results")], "not a comparison")
+        self.assert_refused(["--changes", changed(format_version=2)], "format version")
+        self.assert_refused(["--changes", changed(differences=[{"change": "verdict"}])], "damaged")
+        self.assert_refused(["--changes", changed(change="mood")], "unknown kind of difference 'mood'")
+        self.assert_refused(["--changes", changed(current={**current, "started": "2024-01-01T00:00:00Z"})], "none of the result files given")
+        self.assert_refused(["--changes", changed(current={**current, "revision": "f" * 40})], "none of the result files given")
+
+    def test_history(self):
+        files = self.page("--history", self.written("history.jsonl", *synthetic.nights()))
+        text = Page(files["index.html"].decode()).all_text()
+        self.assertIn("3 nights of the nightly tier", text)
+        self.assertIn("2 verdicts changed over 3 nights", text)
+        rows = list(csv.DictReader(io.StringIO(files["tables/nights-verdicts.csv"].decode())))
+        self.assertEqual([(row["revision"], row["before"], row["now"]) for row in rows], [("2" * 12, "FAIL", "PASS"), ("1" * 12, "PASS", "FAIL")])
+        moved = Page(files["index.html"].decode().split("Trends that moved")[1].split("Steady trends")[0]).all_text()
+        self.assertIn("Velocity, night by night", moved)
+        self.assertNotIn("Pressure", moved)
+        svg = files["figures/nights__taylor_green-re-100__velocity.svg"].decode()
+        self.assertFalse(any("stability_limits" in name for name in files))
+        for words in ("fitted order", "work (pairs + matrix entries)", "run time [s]", "verdict changed", "1111111", "11-22"):
+            self.assertIn(words, svg)
+
+    def test_history_of_one_night_and_of_another_tier(self):
+        quick = {**synthetic.nights(1)[0], "tier": "quick"}
+        files = self.page("--history", self.written("history.jsonl", quick, *synthetic.nights(1)))
+        self.assertIn("1 night of the nightly tier, from the history file. Trends need two.", Page(files["index.html"].decode()).all_text())
+        self.assertFalse(any(name.startswith("figures/nights") for name in files))
+
+    def test_wrong_histories(self):
+        good = synthetic.nights(1)[0]
+        self.assert_refused(["--history", self.source], "results.h5")
+        self.assert_refused(["--history", self.path("none.jsonl")], "no such file")
+        self.assert_refused(["--history", self.written("empty.jsonl")], "empty")
+        self.assert_refused(["--history", self.written("half.jsonl", good, json.dumps(good)[:99])], "half.jsonl, line 2", "no JSON")
+        self.assert_refused(["--history", self.written("a.jsonl", {"date": "today"})], "line 1", "tier or revision")
+        self.assert_refused(["--history", self.written("a.jsonl", {**good, "rows": [{"group": "x"}]})], "rows do not say")
+        self.assert_refused(["--history", self.written("a.jsonl", {**good, "rows": [{**good["rows"][0], "l2": "0.1"}]})], "l2 is not a number")
+
+    def test_swapped_files(self):
+        """A baseline, a comparison or a history where a result file belongs."""
+        for name, tree, words in (("baseline.json", {"format": "sphvv-baseline", "format_version": 1}, "not a result file of sphvv"),
+                                  ("changes.json", synthetic.comparison(), "not a result file of sphvv"), ("history.jsonl", synthetic.nights()[0], "not a result file")):
+            status, _, error = run(self.written(name, tree), "--out", self.path("out"))
+            self.assertEqual((status, len(error.splitlines())), (2, 1))
+            self.assertIn(words, error)
+            self.assertFalse(os.path.exists(self.path("out")))
+
+
+class Large(WithFolder):
+    """A report of more ladders than a first screen can show one by one."""
+
+    def test_overview(self):
+        files = self.report(synthetic.many())
+        source = files["index.html"].decode()
+        front = Page(source[source.index('id="verdicts"'):source.index('id="changes"')]).all_text()
+        self.assertIn("flow ✗ FAIL 1 FAIL, 8 PASS ✓ PASS 18 PASS", front)  # variants of a scheme stand in its column
+        self.assertIn("Every verdict: 54 ladders", front)
+        rows = list(csv.DictReader(io.StringIO(files["tables/overview.csv"].decode())))
+        self.assertEqual([(row["case"], row["scheme"], row["fail"], row["pass"]) for row in rows][2], ("abc_flow", "wcsph", "1", "8"))
+        open_ladders = re.findall(r'<details class="study" id="([^"]+)" open>', source)
+        self.assertEqual(len(open_ladders), 1)  # the one that fails
+        self.assertIn("setting_1__wcsph", open_ladders[0])
+
+    def test_nearest_misses_come_first(self):
+        rows = list(csv.DictReader(io.StringIO(self.report(synthetic.many())["tables/nearest-misses.csv"].decode())))
+        margins = [float(row["margin"]) for row in rows]
+        self.assertEqual(len(rows), overview.MOST_MISSES)
+        self.assertEqual(margins, sorted(margins))
+        self.assertIn("setting_8", rows[0]["where"])  # whose band begins highest
 
 
 class Failing(WithFolder):
@@ -774,7 +936,9 @@ class Pieces(unittest.TestCase):
         self.assertEqual(numbers.band(None, None), "")
 
     def test_escapes(self):
-        self.assertEqual(latex_text("50% of a_b & ∇p ≤ 漢"), r"50\% of a\_b \& $\nabla$p $\le$ [U+6F22]")
+        self.assertEqual(latex_text("50% of a_b & ∇p ≤ 漢"), r"50\% of a\_\allowbreak{}b \& $\nabla$p $\le$ [U+6F22]")
+        self.assertEqual(latex_text("x" * 40).replace(r"\allowbreak{}", ""), "x" * 40)
+        self.assertIn(r"\allowbreak{}", latex_text("x" * 40))
         self.assertEqual(markdown_text("a|b\n<i>"), r"a\|b &lt;i&gt;")
 
     def test_looks_differ_without_colour(self):
@@ -801,10 +965,38 @@ class Pieces(unittest.TestCase):
                       [{"n": 20, "l2": 0.0123}, {"n": 40, "l2": None}], ["fit: none"], context="case")
         self.assertEqual(table.to_markdown(), "**case: errors**\n\n| n | L2 [m/s] |\n|---:|---:|\n| 20 | 1.23e-02 |\n| 40 | – |\n\nfit: none\n")
         latex = table.to_latex()
-        self.assertIn("n & $L_2$ [m/s] \\\\", latex)
+        self.assertIn(r"n & $L_2$ [m/\allowbreak{}s] \\", latex)
         self.assertIn("$20$ & $1.23\\times10^{-2}$ \\\\", latex)
         self.assertIn("$40$ & -- \\\\", latex)
-        self.assertEqual(latex.count("{tabular}"), 2)
+        self.assertEqual(latex.count("{longtable}"), 2)
+
+    def test_columns_fit_on_paper(self):
+        """Widths in em times the size of type, and the room between columns, add up to no more than the text of the page."""
+        number, prose = ["1.23e-04"], ["a sentence of eleven words that no line of paper can hold at once"]
+        for heads, cells in ((["L2"] * 14, [number * 14]), (["why", "where"], [prose * 2]), (["why"] * 8, [prose * 8]), (["x"], [["y" * 300]])):
+            size, widths = latex_layout(heads, cells)
+            total = sum(widths) * dict(SIZES)[size] + 2 * TABCOLSEP * len(heads)
+            self.assertLessEqual(total, TEXT_WIDTH + 1e-9, heads)
+        self.assertEqual(latex_layout(["n"], [["20"]]), ("footnotesize", [LETTER * 2]))
+
+    def test_margin_is_the_distance_to_the_nearest_edge(self):
+        study = {"fit": {"verdict": "PASS", "waiver": None, "norm": "l2", "order": 1.5, "order_l2": [None, 1.3, 1.4]},
+                 "expected": {"low": 1.0, "high": 1.75, "fate": None}, "samples": [{"survived": True}] * 4}
+        self.assertAlmostEqual(overview.margin(study), 0.25)
+        study["expected"]["high"] = None
+        self.assertAlmostEqual(overview.margin(study), 0.4)
+        study["fit"]["verdict"] = "FAIL"
+        self.assertIsNone(overview.margin(study))
+
+    def test_changes_of_verdicts_over_nights(self):
+        courses = nights.ladders(synthetic.nights())
+        changed = nights.verdict_changes(courses)
+        velocity = ("taylor_green re=100", "isph_dfs", "velocity")
+        self.assertEqual(changed, [(velocity, 2, "FAIL", "PASS"), (velocity, 1, "PASS", "FAIL")])
+        self.assertEqual([key for key, course in courses.items() if nights.has_moved(course)], [velocity])
+        lines = synthetic.nights()
+        del lines[1]["rows"][1]
+        self.assertIn((("taylor_green re=100", "isph_dfs", "pressure"), 1, "PASS", "not run"), nights.verdict_changes(nights.ladders(lines)))
 
     def test_colours_of_chips_are_legible(self):
         """Text on its ground at 4.5 : 1 or better, read from the style sheet itself."""
