@@ -164,7 +164,7 @@ Extremes extremes_of_tridiagonal(const std::vector<double>& diagonal, const std:
 /// until they move by less than 1e-6 while the recurrence grows by a quarter. Orthogonality that gets lost
 /// repeats eigenvalues and makes none up (Paige 1976).
 Extremes lanczos(const Product& A, const VectorXd& null, const VectorXd& start) {
-    constexpr int most = 20000;
+    constexpr int most = 4000; // 60 times sqrt(kappa) of 256 x 256 particles
     constexpr double settled = 1e-6;
     const auto deflate = [&](VectorXd& v) { v -= null.dot(v) * null; };
     VectorXd q = start;
