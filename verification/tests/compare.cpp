@@ -298,6 +298,22 @@ TEST(Compare, ARunThatEndsEarlyIsHeldToItsFateAndNotToItsSteps) {
     EXPECT_EQ(count(compare(baseline, undemanded), Change::demand), 1);
 }
 
+TEST(Compare, ASolveMayEndOneIterationEarlierOrLater) {
+    const auto compared = [](double steps, double before, double after) {
+        ResultTree old = result();
+        old["studies"][0]["samples"][0]["steps"] = steps;
+        old["studies"][0]["samples"][0]["solver_iterations"] = before;
+        ResultTree now = old;
+        now["studies"][0]["samples"][0]["solver_iterations"] = after;
+        return compare(old, now).fails();
+    };
+    EXPECT_FALSE(compared(1, 15, 16));
+    EXPECT_TRUE(compared(1, 15, 17));
+    EXPECT_FALSE(compared(100, 500, 510)); // the root of a hundred
+    EXPECT_TRUE(compared(100, 500, 515));
+    EXPECT_FALSE(compared(100, 5000, 5049)) << "1 %";
+}
+
 TEST(Compare, WorkIsKeptOnceForAllFieldsOfARun) {
     ResultTree before = result();
     ResultTree pressure = before["studies"][0];
