@@ -115,11 +115,14 @@ SceneDescription parse_scene(std::string_view text, const std::string& path) {
 }
 
 SceneDescription read_scene_file(const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) { // it could be opened, but not read
+        refuse(path, " is a folder, where a file is needed");
+    }
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    // A folder can be opened, but not read.
-    if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(path)) {
+    if (!stream.is_open() || stream.bad()) {
         refuse(path, " cannot be read: " + std::generic_category().message(errno != 0 ? errno : EIO));
     }
     return parse_scene(text, path);

@@ -216,6 +216,20 @@ class Restart(unittest.TestCase):
                                         check=False)
                 self.assert_refused(result, str(folder))
 
+    def test_what_is_no_scene_is_refused_in_one_sentence(self):
+        wrong = {"key.toml": (b'["a\\nb"]', "a?b"), "header.toml": (b"[%", "line 1"), "character.toml": ("n = 1\nä = 1".encode(), "line 2"),
+                 "time.toml": (b"n = 1979-05-27T?", "time.toml"), "number.toml": (b"n = n\n", "line 1"), "binary.toml": (b"\0\xff", "line 1")}
+        for name, (content_of, fragment) in wrong.items():
+            path = self.folder / name
+            path.write_bytes(content_of)
+            with self.subTest(name):
+                self.assert_refused(subprocess.run([SPHVV, "run", "--scene", str(path), "--dry-run"], capture_output=True, text=True,
+                                                   check=False), name, fragment)
+        for name, fragment in ((".", "folder"), ("missing.toml", "No such file")):
+            with self.subTest(name):
+                self.assert_refused(subprocess.run([SPHVV, "run", "--scene", str(self.folder / name), "--dry-run"], capture_output=True,
+                                                   text=True, check=False), fragment)
+
     def test_a_full_disk_loses_no_older_result(self):
         # A limit on the size of files stands for the full disk, as above; every result is larger than 4 kB.
         def limit():
