@@ -8,7 +8,7 @@ namespace {
 /// A scene whose physics nobody reads would be another scene without saying so.
 template <int Dim>
 void refuse_unread(const Scheme& scheme, const Simulation<Dim>& s) {
-    const auto check = [&](bool wanted, const char* stage, const char* what, const char* accepted = "wcsph") {
+    const auto check = [&](bool wanted, const char* stage, const char* what, const char* accepted) {
         const bool there =
             std::ranges::any_of(s.stages, [stage](const Stage<Dim>& each) { return each.name == stage; });
         if (wanted && !there) {
@@ -16,12 +16,12 @@ void refuse_unread(const Scheme& scheme, const Simulation<Dim>& s) {
                             "; accepted with it: " + accepted);
         }
     };
-    check(s.turbulence.has_value(), "eddy_viscosity", "turbulence");
-    check(s.wall_friction.has_value(), "wall_function", "wall function");
-    check(s.flow_driver.has_value(), "flow_driver", "flow driver");
-    // Of a compressible scheme, p = 0 at the surface follows from its density.
+    check(s.turbulence.has_value(), "eddy_viscosity", "turbulence", "wcsph");
+    check(s.wall_friction.has_value(), "wall_function", "wall function", "wcsph");
+    check(s.flow_driver.has_value(), "flow_driver", "flow driver", "wcsph");
+    // A density that evolves takes p to 0 at a surface by itself.
     check(s.free_surface.has_value() && !scheme.compressible, "free_surface", "free surface",
-          "wcsph, and every scheme that finds it");
+          "wcsph, and the schemes with a projection");
 }
 
 } // namespace

@@ -70,10 +70,13 @@ void add_explicit_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& 
 template <int Dim>
 void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Rates<Dim>>& f) {
     Field& start = s.particles.field("step_start", 2 * Dim + 1, Lifetime::scratch, "predictor");
-    Field& moved = s.particles.field("predictor_displacement", Dim, Lifetime::scratch, "predictor");
+    // The list follows the particles; walls that move, and their images, ask for a new one anyway.
+    Field* const moved =
+        s.walls_move() ? nullptr
+                       : &s.particles.field("predictor_displacement", Dim, Lifetime::scratch, "predictor");
     add_time_step_stage(s, f);
     s.add_stage("neighbours", [](Simulation<Dim>& sim) { find_neighbours(sim, search_skin); });
-    s.add_stage("predictor", [f, &start, &moved](Simulation<Dim>& sim) {
+    s.add_stage("predictor", [f, &start, moved](Simulation<Dim>& sim) {
         const double half = 0.5 * sim.time_step;
         accelerate(sim, *f);
         sim.maximum_acceleration = largest_norm<Dim>(f->acceleration);
@@ -81,18 +84,26 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
         for (int d = 0; d < Dim; ++d) {
             start.components[d] = sim.particles.position.components[d];
             start.components[Dim + d] = sim.particles.velocity.components[d];
-            std::fill(moved.components[d].begin(), moved.components[d].end(), 0.0);
         }
         start.components.back() = f->density.components[0];
-        add_scaled<Dim>(moved, half, sim.particles.velocity);
-        add_scaled<Dim>(sim.particles.position, 1, moved);
+        if (moved != nullptr) {
+            for (auto& component : moved->components) {
+                std::ranges::fill(component, 0.0);
+            }
+            add_scaled<Dim>(*moved, half, sim.particles.velocity);
+            add_scaled<Dim>(sim.particles.position, 1, *moved);
+        } else {
+            add_scaled<Dim>(sim.particles.position, half, sim.particles.velocity);
+        }
         add_scaled<Dim>(sim.particles.velocity, half, f->acceleration);
         add_scaled<1>(f->density, half, f->density_rate);
         update_pressure(sim, *f);
     });
-    s.add_stage("corrector", [f, &start, &moved](Simulation<Dim>& sim) {
-        sim.fill_walls(moved, Parity::displacement); // images in walls that stay
-        if (sim.walls_move() || !sim.neighbours.follow(constant_arrays<Dim>(moved))) {
+    s.add_stage("corrector", [f, &start, moved](Simulation<Dim>& sim) {
+        if (moved != nullptr) {
+            sim.fill_walls(*moved, Parity::displacement); // images in walls that stay
+        }
+        if (moved == nullptr || !sim.neighbours.follow(constant_arrays<Dim>(*moved))) {
             renew_neighbours(sim, sim.time + 0.5 * sim.time_step);
         }
         sim.set_body_force(sim.time + 0.5 * sim.time_step);

@@ -349,6 +349,8 @@ TEST(WalledScenes, RefuseWhatTheyCannotHold) {
     EXPECT_THROW(check("taylor_couette", "isph_dfs", {{"wall_method", "dummy"}}, 16), UserError);
     EXPECT_THROW(run_of("impulsive_plate", "isph_dfs:laplacian=schwaiger:surface_peclet=30", {}, 8),
                  UserError);
+    expect_mentions(refusal([&] { run_of("hydrostatic", "isph_mls", {}, 10); }),
+                    {"isph_mls has no free surface", "wcsph"});
 }
 
 TEST(WalledScenes, RefuseWallsThatRepelWhereTheyCannot) {
