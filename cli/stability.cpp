@@ -110,7 +110,7 @@ int stability(const Options& options, const std::string& command_line) {
     use_threads(options.threads);
     const Wanted wanted = studies_of(options);
     for (const std::string& scheme : options.schemes) {
-        for (const StabilityStudy* study : wanted) {
+        for (const StabilityStudy* study : wanted.stability) {
             check_scheme(*study, scheme); // refused before anything runs
         }
     }
@@ -159,6 +159,9 @@ int stability(const Options& options, const std::string& command_line) {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     auto document = verification::result_document(command_line, provenance, seconds, {});
     document["kind"] = "stability";
+    if (ended) {
+        document["provenance"]["interrupted"] = true;
+    }
     add_to_document(results, document);
     verification::add_to_document(scenes, document);
     verification::add_to_document(conditioning, document);
