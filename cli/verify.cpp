@@ -188,7 +188,10 @@ int verify(const Options& options, const std::string& command_line) {
         }
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    const auto document = result_document(command_line, provenance, seconds, results);
+    auto document = result_document(command_line, provenance, seconds, results);
+    if (ended) {
+        document["provenance"]["interrupted"] = true;
+    }
     if (!options.common.json.empty()) {
         write_text(options.common.json, document.dump(1) + "\n");
     }

@@ -676,6 +676,9 @@ ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty) {
         throw UserError("no baseline is made of a result whose source was not committed when it was built, "
                         "since no revision reproduces it; --allow-dirty does it all the same");
     }
+    if (member(member(result, "provenance"), "interrupted") == true) {
+        throw UserError("no baseline is made of an interrupted run, which lacks studies");
+    }
     ResultTree baseline{{"format", "sphvv-baseline"}, {"format_version", 1}};
     baseline["provenance"] =
         picked(member(result, "provenance"), {"revision", "tree_clean", "compiler", "flags", "cpu"});

@@ -401,7 +401,7 @@ constexpr std::array<Members, 36> members{{
     {"", "a list", "cases studies runs fronts"},
     {"provenance", "a text", "version revision compiler? flags? build_type? cpu? started?"},
     {"provenance", "a number", "threads? seconds?"},
-    {"provenance", "a boolean", "tree_clean"},
+    {"provenance", "a boolean", "tree_clean interrupted?"},
     {"provenance", "an object", "libraries?"},
     {"cases[]", "a text", "name summary? equations? source? domain?"},
     {"cases[]", "a number", "dimension? reference_length?"},

@@ -256,6 +256,7 @@ class Restart(unittest.TestCase):
         self.assertEqual(complaint.strip().splitlines()[-1], "sphvv: interrupted")
         with h5py.File(out) as file:
             self.assertEqual({study.decode() for study in file["stability_limits"]["study"]}, {"stability/acoustic"})
+            self.assertTrue(file["provenance"].attrs["interrupted"])
 
     def test_what_is_no_snapshot_is_refused_and_left_as_it_was(self):
         scene = ("taylor_green", "wcsph", 12, ["end_time=0.02"])

@@ -119,5 +119,6 @@ def provenance_lines(results):
              ("compiler", listed(" ".join(filter(None, [said(result, "compiler"), said(result, "build_type")])) for result in results)),
              ("processor", listed(said(result, "cpu") for result in results)), ("threads", listed(said(result, "threads") for result in results)),
              ("started", times and (times[0] if len(set(times)) == 1 else f"{times[0]} to {times[-1]}")),
-             ("result files", "" if len(results) == 1 else str(len(results)))]
+             ("result files", "" if len(results) == 1 else str(len(results))),
+             ("INTERRUPTED", listed(f"{result['file']} lacks what was not complete" for result in results if result["provenance"]["interrupted"]))]
     return [(name, value) for name, value in lines if value]

@@ -97,7 +97,7 @@ WORKBENCH = {"operators?": [OPERATOR], "operator_studies?": [OPERATOR_STUDY], "o
              "consistency_sums?": [CONSISTENCY_SUM], "seeded_faults?": [SEEDED_FAULT]}
 PROVENANCE = {"version": "text", "revision": "text", "tree_clean": "flag", "compiler?": "text", "flags?": "text",
               "build_type?": "text", "cpu?": "text", "threads?": "number", "libraries?": "object", "started?": "text",
-              "seconds?": "number"}
+              "seconds?": "number", "interrupted?": "flag"}
 RESULT = {"format": "text", "format_version": "number", "command": "text", "provenance": PROVENANCE,
           "cases": [CASE], "studies": [STUDY], "runs": [RUN], "fronts": [FRONT], "claims?": [CLAIM],
           **WORKBENCH, **STABILITY}

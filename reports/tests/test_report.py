@@ -584,6 +584,12 @@ class Odd(WithFolder):
         self.assertIn("MODIFIED", files["index.html"].decode())
         self.assertTrue(all("(modified)" in files[name].decode() for name in files if name.endswith(".svg")))
 
+    def test_an_interrupted_run_is_said_on_the_first_screen(self):
+        tree = synthetic.small()
+        self.assertNotIn("INTERRUPTED", self.report(tree)["index.html"].decode())
+        tree["provenance"]["interrupted"] = True
+        self.assertIn("lacks what was not complete", self.report(tree, "interrupted")["index.html"].decode())
+
     def test_expected_end_that_did_not_come_is_a_finding(self):
         tree = synthetic.small()
         tree["studies"][0]["expected"]["fate"] = "ends_early"

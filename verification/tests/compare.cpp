@@ -598,6 +598,8 @@ TEST(Bless, RefusesWhatDoesNotPassAndNamesIt) {
               std::string::npos);
     EXPECT_NE(refusal([](ResultTree& t) { t["published_figures"][0]["agrees"] = false; }).find("XU-LAP"),
               std::string::npos);
+    EXPECT_NE(refusal([](ResultTree& t) { t["provenance"]["interrupted"] = true; }).find("interrupted"),
+              std::string::npos);
     EXPECT_NE(refusal([](ResultTree& t) { t["provenance"]["tree_clean"] = false; }).find("--allow-dirty"),
               std::string::npos);
     // A disagreement that is known must stay one: if it agrees, its waiver has to go.
