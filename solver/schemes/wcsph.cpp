@@ -103,7 +103,7 @@ void add_predictor_corrector_stages(Simulation<Dim>& s, const std::shared_ptr<Ra
         if (moved != nullptr) {
             sim.fill_walls(*moved, Parity::displacement); // images in walls that stay
         }
-        if (moved == nullptr || !sim.neighbours.follow(constant_arrays<Dim>(*moved))) {
+        if (moved == nullptr || sim.walls_move() || !sim.neighbours.follow(constant_arrays<Dim>(*moved))) {
             renew_neighbours(sim, sim.time + 0.5 * sim.time_step);
         }
         sim.set_body_force(sim.time + 0.5 * sim.time_step);
