@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace sphvv::solver {
 namespace {
@@ -327,6 +328,18 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     // Eigen's own vectors are aligned alike in every run; how it sums over foreign memory depends on the
     // address.
     Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(pressure, size());
+    // Told before it spreads to all others.
+    int alone = -1;
+    for (int i = 0; i < size(); ++i) {
+        const char* fault = !std::isfinite(source_[i])     ? "source not finite"
+                            : !std::isfinite(diagonal_[i]) ? "equation not finite"
+                            : !std::isfinite(p[i])         ? "first guess not finite"
+                                                           : nullptr;
+        if (fault != nullptr) {
+            return {0, std::numeric_limits<double>::quiet_NaN(), false, 0, i, fault};
+        }
+        alone = alone < 0 && diagonal_[i] == 0 ? i : alone;
+    }
     if (singular()) {
         remove_mean(source_.data(), size());
     }
@@ -341,11 +354,18 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
         std::fill(pressure, pressure + size(), 0.0);
         return result;
     }
+    if (alone >= 0) {
+        return {0, 1, false, 0, alone, "equation without neighbours"};
+    }
     if (coarse_ && !coarse_is_current_) {
         coarse_->compute(*this);
         coarse_is_current_ = true;
     }
     const PairMatrix<Dim> matrix(*this);
+    // The rounding error of a product is eps |A| |x| or less. Weights are positive but for few, so that |A|
+    // is about twice the largest diagonal.
+    const double unit = std::numeric_limits<double>::epsilon() * 2 * diagonal_.cwiseAbs().maxCoeff();
+    const double aim = options_.tolerance * source_.norm();
     const auto run = [&](auto&& solver, int products_per_iteration) {
         solver.setTolerance(options_.tolerance);
         solver.setMaxIterations(options_.maximum_iterations);
@@ -356,8 +376,25 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
         result.iterations += iterations;
         result.residual = solver.error();
         result.converged = solver.info() == Eigen::Success;
-        result.matrix_entries +=
-            (neighbours_->pairs() + size()) * (1 + std::int64_t{products_per_iteration} * iterations);
+        int products = 1 + products_per_iteration * iterations;
+        // The solvers carry the residual along; what they lose of it is of the size of the largest vector on
+        // their way (Greenbaum 1997). On that of conjugate gradients it is the guess or the solution, on that
+        // of Bi-CGSTAB it may be any.
+        const double lost = (1 + iterations) * unit * (guess.norm() + p.norm());
+        if (result.converged && iterations > 0 && (!symmetric() || lost > aim)) {
+            Eigen::VectorXd solution = p;
+            if (singular()) {
+                remove_mean(solution.data(), size()); // it may be far larger, and is no part of it
+            }
+            Eigen::VectorXd product(size());
+            multiply(solution.data(), product.data());
+            ++products;
+            const double residual = (source_ - product).norm();
+            result.residual = residual / source_.norm();
+            // No solver gets below the error of the product that tells.
+            result.converged = residual <= aim + (1 + iterations) * unit * solution.norm();
+        }
+        result.matrix_entries += (neighbours_->pairs() + size()) * std::int64_t{products};
     };
     using Conditioner = CellPreconditioner<PressurePoisson>;
     const auto run_from_guess = [&] {
@@ -367,11 +404,21 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
             run(Eigen::BiCGSTAB<PairMatrix<Dim>, Conditioner>(), 2);
         }
     };
+    const auto start_from_zero = [&] {
+        p.setZero();
+        if (singular()) {
+            remove_mean(source_.data(), size()); // what rounding left of a mean much larger than the rest
+        }
+    };
+    // A guess so large that its own rounding drowns the tolerance is of no use.
+    constexpr double beyond_doubt = 10; // times that bound, which rounding at random stays well below
+    if (unit * p.norm() > beyond_doubt * aim) {
+        start_from_zero();
+    }
     const bool from_nothing = p.isZero(0);
     run_from_guess();
     if (!result.converged && !from_nothing) {
-        // The residual of a guess far larger than the solution ends at the guess's round-off.
-        p.setZero();
+        start_from_zero(); // the residual of a guess far larger than the solution ends at its round-off
         run_from_guess();
     }
     if (singular()) {

@@ -14,9 +14,11 @@ namespace sphvv::solver {
 /// Outcome of one linear solve.
 struct LinearSolve {
     int iterations;
-    double residual; ///< |b - A x| / |b|
-    bool converged;
+    double residual;             ///< |b - A x| / |b|
+    bool converged;              ///< to the tolerance, or to the round-off of the product that would tell
     std::int64_t matrix_entries; ///< entries multiplied
+    int faulty = -1;             ///< the first particle without an equation to solve; -1: none
+    const char* fault = "";      ///< what is wrong with its equation
 };
 
 /// The discrete Poisson problem on the particles: sum_j w_ij (p_i - p_j) = b_i, with weights that a Laplacian
@@ -87,7 +89,8 @@ public:
     /// ones.
     void set_condition(int i, double own);
 
-    /// Solves for `pressure`, which holds the first guess; where that leads nowhere, from zero.
+    /// Solves for `pressure`, which holds the first guess; where that leads nowhere, from zero. Leaves it as
+    /// it is where an equation or the guess is no number, or an equation has no neighbours but a source.
     LinearSolve solve(double* pressure);
 
     /// y = A x.

@@ -372,6 +372,10 @@ template <int Dim>
 void book(Simulation<Dim>& s, const LinearSolve& solve, const std::string& of) {
     s.work.solver_iterations += solve.iterations;
     s.work.matrix_entries += solve.matrix_entries;
+    if (solve.faulty >= 0) {
+        throw Diverged(of + " " + solve.fault + ": particle " + std::to_string(s.particles.id[solve.faulty]) +
+                       " at t = " + shortest(s.time) + ", step " + std::to_string(s.step));
+    }
     if (!solve.converged) {
         throw Diverged(of + " solver stopped at residual " + shortest(solve.residual) + " after " +
                        std::to_string(solve.iterations) + " iterations at t = " + shortest(s.time) +
@@ -600,10 +604,12 @@ namespace {
 template <int Dim>
 void set_surface_pressure(Simulation<Dim>& s, PressurePoisson<Dim>& poisson) {
     for (int i = 0; i < poisson.size(); ++i) {
-        if (s.free_surface->at_surface[i] == 0) {
+        // One that has left all neighbours since the surface was found is a surface of its own.
+        const bool alone = poisson.diagonal(i) == 0;
+        if (s.free_surface->at_surface[i] == 0 && !alone) {
             continue;
         }
-        if (s.free_surface->positions) {
+        if (s.free_surface->positions && !alone) {
             set_zero_on_surface(s, poisson, i);
         } else {
             poisson.fix_at_zero(i);
