@@ -174,15 +174,15 @@ bool has_free_surface(const std::string& scheme) {
     return !needs_polynomial(scheme);
 }
 
-const std::string cut_density = "density invariance sums rho over a support that the surface cuts: it is "
-                                "short of rho0 by up to half, the "
-                                "pressure squeezes the rows below the surface until that is made up, and "
-                                "they collapse. The scheme is held "
-                                "against no flow with a free surface";
+const std::string cut_density =
+    "density invariance sums rho over a support that the surface cuts: it starts "
+    "between 0.49 and 0.72 of rho0 there, and the pressure squeezes the rows below "
+    "until that is made up. Held to the density of its start in place of rho0, ";
 
-const std::vector<std::string> blown_up{"kinetic energy", "velocity not finite", "minimum spacing",
-                                        "position not finite or outside the domain",
-                                        "pressure solver stopped"};
+const std::vector<std::string> blown_up{
+    "kinetic energy",          "velocity not finite",
+    "minimum spacing",         "position not finite or outside the domain",
+    "pressure solver stopped", "pressure source not finite"};
 
 void must_be_refused(ExtremeRow& row) {
     row.must = "is refused";

@@ -101,7 +101,7 @@ bool moves_with_new_velocity(const std::string& scheme);
 bool needs_polynomial(const std::string& scheme);
 /// Whether the scheme knows what p = 0 on a surface is.
 bool has_free_surface(const std::string& scheme);
-/// Why isph_di and isph_dfdi are not held to a row with a free surface.
+/// Why isph_di and isph_dfdi fail a row with a free surface; what the scheme does without it is to follow.
 extern const std::string cut_density;
 /// How a run that grows beyond all bounds may end.
 extern const std::vector<std::string> blown_up;

@@ -20,6 +20,7 @@ struct SoundRun {
     ExtremeOutcome outcome;
     double velocity_error = 0; ///< relative, L2
     double density_change = 0; ///< largest |rho - mean rho|/rho0, over all steps
+    double mean_change = 0;    ///< largest |mean rho - rho0|/rho0, over all steps
 };
 
 /// Taylor-Green vortices, density 1, U = 1, Re = 100, in the unit square.
@@ -54,6 +55,7 @@ SoundRun with_sound(const std::string& scheme) {
             const std::span<const double> density((*s.particles.find("density"))[0], s.particles.size());
             const double mean =
                 std::accumulate(density.begin(), density.end(), 0.) / static_cast<double>(density.size());
+            run.mean_change = std::max(run.mean_change, std::abs(mean - s.density));
             for (const double rho : density) {
                 largest = std::max(largest, std::abs(rho - mean));
             }
@@ -79,77 +81,86 @@ SoundRun with_sound(const std::string& scheme) {
     return run;
 }
 
-/// Second moment <x^2>_W over h^2 of the quintic spline in two dimensions, int q^3 W dq / (2 int q W dq),
-/// exactly: of (a - q)^5 the integrals of q^m are a^(m+6) m! 5!/(m+6)!.
-constexpr double quintic_moment = 2771. / 5736;
+/// A kernel at h/dx = 1.3, and its second moment <x^2>_W over h^2 in two dimensions, int q^3 W dq / (2 int q
+/// W dq). Of the quintic spline it is a sum over (a - q)^5, whose integrals with q^m are a^(m+6) m!
+/// 5!/(m+6)!; of wendland_c2 the integrals are beta functions.
+struct SmoothedBy {
+    const char* settings;
+    double moment;
+};
+constexpr SmoothedBy quintic{":kernel=quintic_spline", 2771. / 5736};
+constexpr SmoothedBy wendland{"", 5. / 18}; // the default
+
+const std::string mean_drifts =
+    "the sum of the continuity equation on a deformed lattice, M : grad u with M = -sum V r (x) gradW, has "
+    "no "
+    "mean of 0. Lattice sums along the exact paths of the vortices give a mean density of 7.8e-4 rho0 at t = "
+    "0.02 with wendland_c2, 7.3e-5 at h/dx = 2 and 2.7e-5 with quintic_spline; measured are 7.4e-4, 7.1e-5 "
+    "and "
+    "2.5e-5 at c0/U = 300, where Ma^2 is 1.1e-5";
+const std::string mean_pressure_acts =
+    mean_drifts + ". Its pressure, c0^2 times it, cannot leave a periodic box, and acts on the deformed "
+                  "lattice: with the mean taken off after each step the velocity is off by 0.8 % in place of "
+                  "5.2 % at c0/U = 300, and of 50 % at 1000";
+const std::string not_established =
+    "cause not established: 2.2 with the mean density taken off after each step; within the bound with "
+    "quintic_spline";
+
+void add_sound_of(std::vector<ExtremeRow>& all, const SmoothedBy& kernel, double ratio) {
+    const bool is_default = kernel.moment == wendland.moment;
+    const std::string scheme = "wcsph:c0_over_u=" + solver::shortest(ratio) + kernel.settings;
+    const double h = 1.3 / sound_n;
+    const double steps = std::ceil(sound_duration / (0.4 * h / ratio));
+    const auto add = [&](const char* name, const std::string& must, const std::string& why, double bound,
+                         auto&& error, const std::string& waiver = "") {
+        all.push_back({.name = std::string("stiff sound: ") + name,
+                       .scheme = scheme,
+                       .must = must,
+                       .why = why,
+                       .fate = Fate::bounded,
+                       .bound = bound,
+                       .run =
+                           [error](const std::string& of) {
+                               SoundRun run = with_sound(of);
+                               run.outcome.error = error(run);
+                               return run.outcome;
+                           },
+                       .waiver = waiver});
+    };
+    add("steps", "takes " + solver::shortest(steps) + " steps; error: share that differs",
+        "dt = 0.4 h/c0 rules: T/dt in even steps, in proportion to c0", 0, [steps](const SoundRun& run) {
+            return std::abs(static_cast<double>(run.outcome.steps) / steps - 1);
+        });
+    add(
+        "density", "the density varies with Ma^2; error: max|rho - mean rho|/(rho0 Ma^2)",
+        "p = -(rho0 U^2/4)(cos 2kx + cos 2ky) is within rho0 U^2/2: Ma^2/2 in density. Of what the start "
+        "misses of "
+        "that, all at most, a wave makes p (1 - cos wt): 1",
+        1, [ratio](const SoundRun& run) { return run.density_change * ratio * ratio; },
+        is_default && ratio > 300 ? not_established : "");
+    add(
+        "mean density", "the box keeps its mass; error: |mean rho - rho0|/(rho0 Ma^2)",
+        "particles of mass m fill the box, sum m/rho = V: the mean of rho is off by the square of its "
+        "variation, Ma^4 or so; 1 is a pressure as large as that of the flow",
+        1, [ratio](const SoundRun& run) { return run.mean_change * ratio * ratio; },
+        ratio > (is_default ? 30 : 100) ? mean_drifts : "");
+    // Of the root mean square velocity 1/sqrt(2): the acceleration by pressure has U^2 k/2.
+    const double smoothing =
+        sound_duration * (k / 2) * std::sqrt(2.) * (4 * k * k) * kernel.moment * h * h / 2;
+    add(
+        "velocity", "the vortices turn as they must; error: velocity, L2",
+        "smoothing takes (2k)^2 <x^2>_W/2 of the pressure gradient, rms U^2 k/2, over T; sound has u <= "
+        "p/(rho "
+        "c0) = U Ma (of 1/sqrt(2) U)",
+        smoothing + std::sqrt(2.) / ratio, [](const SoundRun& run) { return run.velocity_error; },
+        is_default && ratio > 100 ? mean_pressure_acts : "");
+}
 
 void add_sound(std::vector<ExtremeRow>& all) {
-    struct Speed {
-        std::string text;
-        double value;
-    };
-    const std::string quintic = ":kernel=quintic_spline";
-    for (const auto& [text, ratio] :
-         {Speed{"10" + quintic, 10}, Speed{"30" + quintic, 30}, Speed{"100" + quintic, 100},
-          Speed{"300" + quintic, 300}, Speed{"1000" + quintic, 1000}, Speed{"300", 300}}) {
-        const std::string scheme = "wcsph:c0_over_u=" + text;
-        // The default kernel, wendland_c2 at h/dx = 1.3.
-        const std::string waiver =
-            text.ends_with(quintic)
-                ? ""
-                : "the quadrature error of wendland_c2 at h/dx = 1.3 depends on how the lattice is sheared: "
-                  "times "
-                  "c0^2 it is an elastic solid's stress, which turns the vortices' energy into sound "
-                  "(velocity off "
-                  "by 5 % at t = 0.02, at 0.1 of the acoustic limit as at 0.4, without background pressure, "
-                  "and with "
-                  "the predictor-corrector; by 0.03 % with quintic_spline, 0.04 % with h/dx = 2)";
-        const double h = 1.3 / sound_n;
-        const double steps = std::ceil(sound_duration / (0.4 * h / ratio));
-        all.push_back({.name = "stiff sound: steps",
-                       .scheme = scheme,
-                       .must = "takes " + solver::shortest(steps) + " steps; error: share that differs",
-                       .why = "dt = 0.4 h/c0 rules: T/dt in even steps, in proportion to c0",
-                       .fate = Fate::bounded,
-                       .bound = 0,
-                       .run = [steps](const std::string& of) {
-                           ExtremeOutcome outcome = with_sound(of).outcome;
-                           outcome.error = std::abs(static_cast<double>(outcome.steps) / steps - 1);
-                           return outcome;
-                       }});
-        if (waiver.empty()) {
-            all.push_back(
-                {.name = "stiff sound: density",
-                 .scheme = scheme,
-                 .must = "the density varies with Ma^2; error: max|rho - mean rho|/(rho0 Ma^2)",
-                 .why = "|p| <= rho0 U^2/2 makes Ma^2/2; a wave set free by it overshoots by as much: 1",
-                 .fate = Fate::bounded,
-                 .bound = 1,
-                 .run = [value = ratio](const std::string& of) {
-                     SoundRun run = with_sound(of);
-                     run.outcome.error = run.density_change * value * value;
-                     return run.outcome;
-                 }});
+    for (const SmoothedBy& kernel : {quintic, wendland}) {
+        for (const double ratio : {10., 30., 100., 300., 1000.}) {
+            add_sound_of(all, kernel, ratio);
         }
-        // Of the root mean square velocity 1/sqrt(2): the acceleration by pressure has U^2 k/2.
-        const double smoothing =
-            sound_duration * (k / 2) * std::sqrt(2.) * (4 * k * k) * quintic_moment * h * h / 2;
-        all.push_back(
-            {.name = "stiff sound: velocity",
-             .scheme = scheme,
-             .must = "the vortices turn as they must; error: velocity, L2",
-             .why =
-                 "smoothing takes (2k)^2 <x^2>_W/2 of the pressure gradient, rms U^2 k/2, over T; sound has "
-                 "u <= p/(rho c0) = U Ma (of 1/sqrt(2) U)",
-             .fate = Fate::bounded,
-             .bound = smoothing + std::sqrt(2.) / ratio,
-             .run =
-                 [](const std::string& of) {
-                     SoundRun run = with_sound(of);
-                     run.outcome.error = run.velocity_error;
-                     return run.outcome;
-                 },
-             .waiver = waiver});
     }
 }
 
