@@ -18,10 +18,8 @@
 ///   dt = L/(2 pi U) = n dx/(2 pi U), or n/(0.4 pi h/dx) times the published bound:
 /// 0.61 n of it at h/dx = 1.3. So the published bound is one of accuracy, not of stability.
 ///
-/// (The isotropic part is all that is taken off in the middle of a vortex, for reasons of symmetry. At a
-/// saddle the pressure of the rest of the flow adds a part of second order: with P the projection, u after a
-/// step is u + dt^2 P[(u.grad) q + (q.grad) u]/2, q = (u.grad) u, which for Taylor-Green vortices gives
-/// omega (1 - sigma^2) and s (1 + sigma^2/5).)
+/// (That is the projection of a linear flow. In the vortices the pressure of the rest of the flow adds to it
+/// at second order in dt, which moves no fold: F is that of the drift alone.)
 ///
 /// Beyond the fold there are caustics, across which particles of different places mix, so that no run keeps
 /// its arrangement there. Below it a run is squeezed by the flow itself, by e^-1 in the time 1/s, and how
