@@ -475,7 +475,7 @@ std::span<const StabilityStudy> stability_studies() {
              .schemes =
                  joined(joined(variants(plain, common, {1.3}), variants(monaghan, common, {1.3})),
                         {plain + ":integrator=predictor_corrector", plain + ":integrator=verlet", "isph_df",
-                         "isph_dfs", "isph_lee", "isph_di", "isph_dfdi", "isph_asai", "isph_mls"})},
+                         "isph_dfs", "isph_lee", "isph_dfdi"})},
             {.name = "stability/advective",
              .tier = Tier::quick,
              .summary =
