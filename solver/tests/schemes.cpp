@@ -1291,7 +1291,7 @@ TEST(TimeStep, OfTheWeaklyCompressibleSchemeIsThePublishedLimit) {
     EXPECT_DOUBLE_EQ(step(3, 2, {{"time_step", "0.004"}}), 0.004);
 }
 
-TEST(PressureSolver, EndsTheRunWhereItDoesNotConverge) {
+TEST(PressureSolver, EndsTheRunWhereAGuessIsNoNumber) {
     const Scheme& scheme = schemes::find("isph_df");
     Simulation<2> scene = flowing_scene<2>(scheme, {}, 9);
     scheme.assemble(scene);
@@ -1301,9 +1301,7 @@ TEST(PressureSolver, EndsTheRunWhereItDoesNotConverge) {
         advance(scene);
         FAIL() << "went on";
     } catch (const Diverged& reason) {
-        EXPECT_EQ(
-            std::string(reason.what()).find("pressure solver stopped at residual nan after 2000 iterations"),
-            0)
+        EXPECT_EQ(std::string(reason.what()).find("pressure first guess not finite: particle 5 at t = 0"), 0)
             << reason.what();
         EXPECT_NE(std::string(reason.what()).find("step 1"), std::string::npos) << reason.what();
     }
