@@ -470,11 +470,12 @@ std::span<const StabilityStudy> stability_studies() {
              .tier = Tier::quick,
              .summary = "largest dt of explicit viscosity, in 0.125 h^2/nu",
              .source = source,
-             .cost = 35,
+             .cost = 40,
              .limit = Limit::viscous,
-             .schemes = joined(joined(variants(plain, common, {1.3}), variants(monaghan, common, {1.3})),
-                               {plain + ":integrator=predictor_corrector", plain + ":integrator=verlet",
-                                "isph_df", "isph_dfs", "isph_lee", "isph_dfdi"})},
+             .schemes =
+                 joined(joined(variants(plain, common, {1.3}), variants(monaghan, common, {1.3})),
+                        {plain + ":integrator=predictor_corrector", plain + ":integrator=verlet", "isph_df",
+                         "isph_dfs", "isph_lee", "isph_di", "isph_dfdi", "isph_asai", "isph_mls"})},
             {.name = "stability/advective",
              .tier = Tier::quick,
              .summary =
