@@ -45,7 +45,7 @@ SoundRun with_sound(const std::string& scheme) {
     Simulation s = simulate(scheme, vortices());
     s.end_time = sound_duration;
     const double dt = 0.4 * s.smoothing_length / s.settings.number("c0_over_u");
-    const int steps = static_cast<int>(std::ceil(sound_duration / dt));
+    const auto steps = static_cast<std::int64_t>(std::ceil(sound_duration / dt));
     SoundRun run;
     double largest = 0;
     try {
