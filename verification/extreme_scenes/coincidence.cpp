@@ -65,20 +65,20 @@ std::vector<ExtremeRow> rows() {
         const char* name;
         double distance; ///< dx
     };
-    for (const auto& [name, distance] :
+    for (const Gap gap :
          {Gap{"two particles at one place", 0}, Gap{"two particles 1e-12 dx apart", 1e-12},
           Gap{"two particles 1e-8 dx apart", 1e-8}, Gap{"two particles 1e-3 dx apart", 1e-3}}) {
         add_for_all(all, [&](const std::string& scheme) {
             const bool keeps = conserves_momentum(scheme);
             ExtremeRow row{
-                .name = name,
+                .name = gap.name,
                 .scheme = scheme,
                 .must = "forces stay finite; error: |P - P0|/(M U)",
                 .why = keeps ? "gradW(0) = 0: no direction, no force; antisymmetric forces keep the momentum"
                              : "gradW(0) = 0: no direction, no force; momentum is not claimed",
                 .fate = keeps ? Fate::bounded : Fate::survives,
                 .bound = round_off,
-                .run = [distance](const std::string& of) { return coincide(of, distance * dx); }};
+                .run = [gap](const std::string& of) { return coincide(of, gap.distance * dx); }};
             if (needs_polynomial(scheme)) {
                 row.must = "ends with a diagnosis of energy, place or the pressure solver";
                 row.why = "its shifts go with (dx/r)^2 U_rms, 1e6 and more once the two have parted by dt "
