@@ -1,6 +1,7 @@
 #include "sphvv/verification/compare.hpp"
 
 #include "sphvv/solver/error.hpp"
+#include "sphvv/solver/storage/trial_reading.hpp"
 #include "sphvv/verification/case.hpp"
 #include "sphvv/verification/claims.hpp"
 #include "sphvv/verification/markdown_table.hpp"
@@ -555,6 +556,7 @@ bool Comparison::fails() const {
 ResultTree read_comparable(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     if (!stream || (stream >> std::ws).peek() != '{') {
+        solver::storage::read_in_trial(path);
         ResultTree tree = read_results_hdf5(path);
         check_result_file(tree, path);
         return tree;

@@ -2,7 +2,6 @@
 
 #include "sphvv/solver/error.hpp"
 #include "sphvv/solver/storage/hdf5.hpp"
-#include "sphvv/solver/storage/trial_reading.hpp"
 
 #include <algorithm>
 #include <array>
@@ -548,7 +547,6 @@ void write_results_hdf5(const ResultTree& tree, const std::filesystem::path& pat
 }
 
 ResultTree read_results_hdf5(const std::filesystem::path& path) {
-    solver::storage::read_in_trial(path);
     const Group root = solver::storage::open_hdf5(path);
     const auto attribute = [&](const std::string& name) {
         return root.has_attribute(name) ? read_scalar(root, name, false) : ResultTree();

@@ -1,6 +1,7 @@
 // `sphvv compare`, `sphvv bless`: any bytes are a result file, in HDF5 or JSON, or a baseline, or are refused
 // in one sentence.
 #include "sphvv/solver/fuzz/target.hpp"
+#include "sphvv/solver/storage/trial_reading.hpp"
 #include "sphvv/verification/compare.hpp"
 
 using namespace sphvv;
@@ -22,6 +23,9 @@ void require_round_trip(const ResultTree& tree) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const fuzz::Scratch scratch;
     scratch.with({reinterpret_cast<const char*>(data), size});
+    if (fuzz::is_refused_in_words([] { solver::storage::read_in_trial(scratch.path()); })) {
+        return 0;
+    }
     fuzz::is_refused_in_words([] { require_round_trip(read_results_hdf5(scratch.path())); });
     fuzz::is_refused_in_words([] {
         const ResultTree tree = read_comparable(scratch.path());
