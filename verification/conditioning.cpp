@@ -427,7 +427,7 @@ std::span<const ConditioningStudy> conditioning_studies() {
         {.name = "stability/conditioning_large",
          .tier = Tier::nightly,
          .summary = "the same up to 65536 particles",
-         .cost = 180,
+         .cost = 40,
          .ladder = {16, 32, 64, 128, 256},
          .disordered = {32, 48, 64, 96, 128},
          .side = 32,

@@ -289,7 +289,7 @@ std::vector<Study> studies(const std::string& name) {
              .cost = 100,
              .picture_at = 40},
             {.name = name + "/published_fine",
-             .tier = Tier::nightly,
+             .tier = Tier::full,
              .schemes = {step_c_ordered},
              .settings = brief,
              .ladder = {60, 82},

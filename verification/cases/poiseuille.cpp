@@ -115,7 +115,7 @@ std::vector<Study> studies() {
                    .ladder = {10, 20, 40, 80},
                    .cost = 120});
     all.push_back({.name = "poiseuille/implicit_re10",
-                   .tier = Tier::nightly,
+                   .tier = Tier::full,
                    .schemes = both,
                    .settings = {{"re", "10"}, {"end_time", "20"}, {"columns", "10"}},
                    .ladder = {10, 20, 40, 80},

@@ -35,14 +35,14 @@ std::vector<ExtremeRow> rows() {
         double place;
     };
     const std::string particle = ": particle " + std::to_string(culprit) + " ";
-    for (const auto& [name, velocity, place] : {Start{"a velocity of NaN at the start", no_number, 0},
-                                                Start{"an infinite velocity at the start", infinite, 0},
-                                                Start{"a place of NaN at the start", 0, no_number},
-                                                Start{"an infinite place at the start", 0, infinite}}) {
-        const bool of_velocity = place == 0;
+    for (const Start& given : {Start{"a velocity of NaN at the start", no_number, 0},
+                               Start{"an infinite velocity at the start", infinite, 0},
+                               Start{"a place of NaN at the start", 0, no_number},
+                               Start{"an infinite place at the start", 0, infinite}}) {
+        const bool of_velocity = given.place == 0;
         add_for_all(all, [&](const std::string& scheme) {
             return ExtremeRow{
-                .name = name,
+                .name = given.name,
                 .scheme = scheme,
                 .must = "ends in the first step and names the particle",
                 .why = "it is told before it spreads to its neighbours",
@@ -50,7 +50,7 @@ std::vector<ExtremeRow> rows() {
                 .diagnoses = {(of_velocity ? "velocity not finite"
                                            : "position not finite or outside the domain") +
                               particle},
-                .run = [velocity, place](const std::string& of) { return start(of, velocity, place); }};
+                .run = [given](const std::string& of) { return start(of, given.velocity, given.place); }};
         });
     }
     return all;

@@ -64,18 +64,19 @@ std::vector<ExtremeRow> rows() {
         const char* text;
         int steps;
     };
-    for (const auto& [tier, text, steps] :
+    for (const Length& length :
          {Length{Tier::quick, "1e3 steps", 1000}, Length{Tier::nightly, "1e5 steps", 100000}}) {
+        const int steps = length.steps;
         const auto row = [&](const char* name, const std::string& scheme, const char* must, const char* why,
                              double bound, ExtremeOutcome (*run)(const std::string&, int)) {
-            return ExtremeRow{.name = std::string(text) + ": " + name,
+            return ExtremeRow{.name = std::string(length.text) + ": " + name,
                               .scheme = scheme,
                               .must = must,
                               .why = why,
                               .fate = Fate::bounded,
                               .bound = bound,
-                              .run = [run, count = steps](const std::string& of) { return run(of, count); },
-                              .tier = tier};
+                              .run = [run, steps](const std::string& of) { return run(of, steps); },
+                              .tier = length.tier};
         };
         add_for_all(all, [&](const std::string& scheme) {
             return row("uniform motion", scheme, "goes on; error: velocity, m/s",
