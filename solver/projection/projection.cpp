@@ -280,7 +280,7 @@ SharedProjection<Dim> make_projection(Simulation<Dim>& s, Density density) {
     }
     const bool summed = density == Density::summed;
     const bool keeps_L = !summed && (gradient == Gradient::normalised || schwaiger);
-    const auto projection = std::make_shared<Projection<Dim>>(Projection<Dim>{
+    auto projection = std::make_shared<Projection<Dim>>(Projection<Dim>{
         particles.field("pressure", 1, Lifetime::state, "pressure_poisson"),
         particles.field("velocity_next", Dim, Lifetime::scratch, forces_name(s)),
         keeps_L ? &particles.field("renormalisation", Dim * Dim, Lifetime::scratch,
