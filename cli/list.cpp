@@ -88,33 +88,23 @@ Entries studies() {
                                {"cost", study.cost}});
         }
     }
-    for (const verification::ExtremeStudy& study : verification::extreme_studies()) {
+    const auto add = [&](const auto& study, const std::string& summary, const std::string& source) {
         entries.push_back({{"name", study.name},
                            {"summary", std::string(to_string(study.tier)) + " tier, " +
-                                           verification::duration_text(study.cost) +
-                                           ": scenes at and past the edge of what the schemes are made for"},
-                           {"source", "each row's own"},
+                                           verification::duration_text(study.cost) + ": " + summary},
+                           {"source", source},
                            {"command", "stability"},
                            {"tier", to_string(study.tier)},
                            {"cost", study.cost}});
+    };
+    for (const verification::ExtremeStudy& study : verification::extreme_studies()) {
+        add(study, "scenes at and past the edge of what the schemes are made for", "each row's own");
     }
     for (const verification::ConditioningStudy& study : verification::conditioning_studies()) {
-        entries.push_back({{"name", study.name},
-                           {"summary", std::string(to_string(study.tier)) + " tier, " +
-                                           verification::duration_text(study.cost) + ": " + study.summary},
-                           {"source", "each check's own"},
-                           {"command", "stability"},
-                           {"tier", to_string(study.tier)},
-                           {"cost", study.cost}});
+        add(study, study.summary, "each check's own");
     }
     for (const verification::StabilityStudy& study : verification::stability_studies()) {
-        entries.push_back({{"name", study.name},
-                           {"summary", std::string(to_string(study.tier)) + " tier, " +
-                                           verification::duration_text(study.cost) + ": " + study.summary},
-                           {"source", study.source},
-                           {"command", "stability"},
-                           {"tier", to_string(study.tier)},
-                           {"cost", study.cost}});
+        add(study, study.summary, study.source);
     }
     return entries;
 }
