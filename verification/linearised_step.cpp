@@ -100,10 +100,13 @@ std::vector<Eigen::MatrixXcd> linearised_step(const LatticeScene& scene, double 
             if (mean || twice) {
                 continue;
             }
-            const Eigen::VectorXcd wave = Eigen::VectorXcd::NullaryExpr(n * n, [&](Eigen::Index R) {
-                return std::polar(1.,
-                                  -2 * std::numbers::pi / n * static_cast<double>(a * (R % n) + b * (R / n)));
-            });
+            const Eigen::VectorXcd wave =
+                Eigen::VectorXcd::NullaryExpr(Eigen::Index{n} * n, [&](Eigen::Index R) {
+                    const Eigen::Index column = R % n;
+                    const Eigen::Index row = R / n;
+                    return std::polar(1.,
+                                      -2 * std::numbers::pi / n * static_cast<double>(a * column + b * row));
+                });
             Eigen::MatrixXcd M(size, size);
             for (Eigen::Index column = 0; column < size; ++column) {
                 for (Eigen::Index row = 0; row < size; ++row) {

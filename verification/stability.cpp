@@ -683,7 +683,8 @@ std::string markdown(const StabilityResults& results) {
             }
             table.add(row);
         }
-        text += table.text() + "\n(!): theory says otherwise. " + map.reason + ": " + map.verdict + "\n";
+        text += table.text() + "\n(!): theory says otherwise, or growth is too slow to tell. " + map.reason +
+                ": " + map.verdict + "\n";
     }
     return text;
 }

@@ -91,7 +91,7 @@ def map_picture(name, chart, stamp):
     theory = numpy.array([numpy.nan if value is None else value for value in chart["theory"]], dtype=float).reshape(shape)
     handles = [Patch(facecolor=STABLE, edgecolor="#c8d2da", label="stays"), Patch(facecolor=GROWS, label="grows"),
                Patch(facecolor=ENDED, label="grows until the run ends"), Line2D([], [], color="black", label="theory: growth begins"),
-               Line2D([], [], color="black", marker="x", linestyle="", label="theory says otherwise")]
+               Line2D([], [], color="black", marker="x", linestyle="", label="theory says otherwise, or growth is too slow to tell")]
     missed = ""
     if chart["criterion"]:
         handles.append(Line2D([], [], color=CRITERION, linestyle=(0, (3, 1.5)), label=f"unstable by {chart['criterion']}"))

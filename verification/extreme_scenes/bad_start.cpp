@@ -12,7 +12,7 @@ constexpr int culprit = 57;
 ExtremeOutcome start(const std::string& scheme, double velocity, double place) {
     constexpr int n = 10;
     PointScene scene{.places = block(n, n, 1. / n, {0, 0}),
-                     .velocities = std::vector<Point>(n * n, Point{0.1, 0}),
+                     .velocities = std::vector<Point>(std::size_t{n} * n, Point{0.1, 0}),
                      .box = {{0, 0}, {1, 1}, {true, true}},
                      .free_surface = false,
                      .dx = 1. / n,

@@ -103,7 +103,7 @@ ExtremeOutcome between_lids(const std::string& scheme) {
         result[2] = pressures_of(s);
         return result;
     };
-    const ExtremeOutcome first = advance_and_measure(slow, steps, [](const Simulation&) { return 0.; });
+    ExtremeOutcome first = advance_and_measure(slow, steps, [](const Simulation&) { return 0.; });
     if (!first.survived) {
         return first;
     }

@@ -48,14 +48,14 @@ ExtremeOutcome long_box(const std::string& scheme) {
     constexpr int few = 8;
     Simulation box = simulate(scheme, shear_wave(few));
     Simulation longer = simulate(scheme, shear_wave(columns));
-    const ExtremeOutcome first = advance_and_measure(box, aspect_steps, [](const Simulation&) { return 0.; });
+    ExtremeOutcome first = advance_and_measure(box, aspect_steps, [](const Simulation&) { return 0.; });
     if (!first.survived) {
         return first;
     }
     return advance_and_measure(longer, aspect_steps, [&](const Simulation& end) {
         const std::vector<Point> column = velocities_of(box);
         std::vector<Point> expected;
-        for (int row = 0; row < aspect_rows; ++row) {
+        for (std::size_t row = 0; row < aspect_rows; ++row) {
             expected.insert(expected.end(), columns, column[row * few]);
         }
         return largest_difference(velocities_of(end), expected);
@@ -93,7 +93,7 @@ ExtremeOutcome offset(const std::string& scheme) {
     const std::vector<Point> places = block(far_n, far_n, 1. / far_n, {0, 0});
     Simulation near = simulate(scheme, vortices(places, 1. / far_n, 0));
     Simulation away = simulate(scheme, vortices(places, 1. / far_n, far));
-    const ExtremeOutcome first = advance_and_measure(near, far_steps, [](const Simulation&) { return 0.; });
+    ExtremeOutcome first = advance_and_measure(near, far_steps, [](const Simulation&) { return 0.; });
     if (!first.survived) {
         return first;
     }

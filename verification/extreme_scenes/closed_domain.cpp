@@ -54,7 +54,7 @@ PointScene vortices(double low, double high, bool closed) {
 ExtremeOutcome quarter_of_whole(const std::string& scheme) {
     Simulation whole = simulate(scheme, vortices(0, 1, false));
     Simulation quarter = simulate(scheme, vortices(0.25, 0.75, true));
-    const ExtremeOutcome of_whole = advance_and_measure(whole, steps, [](const Simulation&) { return 0.; });
+    ExtremeOutcome of_whole = advance_and_measure(whole, steps, [](const Simulation&) { return 0.; });
     if (!of_whole.survived) {
         return of_whole;
     }

@@ -18,8 +18,10 @@ PointScene thrown(std::vector<Point> places, const Point& velocity, double body_
 }
 
 std::vector<Point> line(double angle) {
+    constexpr int n = 20;
     std::vector<Point> places;
-    for (int k = 0; k < 20; ++k) {
+    places.reserve(n);
+    for (int k = 0; k < n; ++k) {
         places.push_back({k * dx * std::cos(angle), k * dx * std::sin(angle)});
     }
     return places;

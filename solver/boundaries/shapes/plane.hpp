@@ -2,16 +2,16 @@
 
 #include "sphvv/solver/boundaries/wall.hpp"
 
-#include <utility>
+#include <string>
 
 namespace sphvv::solver::shapes {
 
 /// The plane (line in 2-D) through `point` (m) with the unit vector `normal` into the fluid; distance =
 /// normal . (x - point). `speed` is of its material, m/s.
 template <int Dim>
-Wall<Dim> plane(std::string name, const Vector<Dim>& point, const Vector<Dim>& normal, Slip slip,
+Wall<Dim> plane(const std::string& name, const Vector<Dim>& point, const Vector<Dim>& normal, Slip slip,
                 const Vector<Dim>& speed = Vector<Dim>::Zero()) {
-    return {.name = std::move(name),
+    return {.name = name,
             .slip = slip,
             .distance = [point, normal](const Vector<Dim>& x) { return normal.dot(x - point); },
             .normal = [normal](const Vector<Dim>& /*x*/) { return normal; },
