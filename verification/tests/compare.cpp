@@ -180,6 +180,20 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
     };
     EXPECT_FALSE(with([](ResultTree& now) { now["stability_limits"][0]["measured"] = 4.53; }).fails());
     EXPECT_FALSE(with([](ResultTree& now) { now["extreme_rows"][0]["error"] = 9e-16; }).fails());
+    ResultTree unheld = before;
+    unheld["extreme_rows"][0]["fate"] = "survives";
+    unheld["extreme_rows"][0].erase("bound");
+    unheld["extreme_rows"][0]["error"] = 2e-3;
+    ResultTree later = unheld;
+    for (const auto& [error, fails] : {std::pair{5e-3, false}, {5e-4, false}, {5e-2, true}, {5e-5, true}}) {
+        later["extreme_rows"][0]["error"] = error;
+        EXPECT_EQ(compare(unheld, later).fails(), fails) << error;
+        later["extreme_rows"][0]["fate"] = "bounded";
+        ResultTree held = unheld;
+        held["extreme_rows"][0]["fate"] = "bounded";
+        EXPECT_TRUE(compare(held, later).fails()) << error;
+        later["extreme_rows"][0]["fate"] = "survives";
+    }
     EXPECT_FALSE(
         with([](ResultTree& now) { now["conditioning_rows"][0]["iterations_two_level"] = 25; }).fails());
     for (const auto& [list, name, value, change] :
@@ -386,6 +400,19 @@ TEST(Summary, FitsAPullRequestAndNamesVerdictBuildsAndWhy) {
     EXPECT_NE(summary(compare(before, before), before, before).find("PASS"), std::string::npos);
 }
 
+TEST(Compare, AddsUpTheSecondsOfARunOnce) {
+    ResultTree tree = result();
+    tree.erase("operator_studies");
+    tree["studies"].push_back(tree["studies"][0]);
+    tree["studies"][1]["field"] = "pressure";
+    double seconds = 0;
+    for (const ResultTree& sample : tree["studies"][0]["samples"]) {
+        seconds += sample["seconds"].get<double>();
+    }
+    ASSERT_GT(seconds, 0);
+    EXPECT_DOUBLE_EQ(compare(tree, tree).seconds_before, seconds);
+}
+
 TEST(Merged, IsAllOfOneBuild) {
     ResultTree operators = result();
     operators.erase("studies");
@@ -393,6 +420,8 @@ TEST(Merged, IsAllOfOneBuild) {
     const ResultTree both = merged(std::array{operators, schemes});
     EXPECT_TRUE(compare(result(), both).differences.empty());
     EXPECT_FALSE(compare(result(), both).fails());
+    schemes["provenance"]["interrupted"] = true;
+    EXPECT_THROW(reduced_for_baseline(merged(std::array{operators, schemes})), UserError);
     schemes["provenance"]["revision"] = "other";
     EXPECT_THROW(merged(std::array{operators, schemes}), UserError);
 }
