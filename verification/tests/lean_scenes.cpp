@@ -65,6 +65,7 @@ std::vector<std::string> choices(const Case& flow) {
             all.emplace_back(form);
         }
     }
+    all.emplace_back(":viscous_step=implicit");
     for (const solver::WallMethodEntry* method : solver::wall_methods::all()) {
         all.push_back(":wall_method=" + std::string(method->name));
     }
