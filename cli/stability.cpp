@@ -197,8 +197,10 @@ void add_stability(CLI::App& app, Act& act, const std::string& command_line) {
     command->add_option("--threads", options->threads, "threads of a run")->capture_default_str();
     command->add_option("--out", options->out, "result file (HDF5) for sphvv report")->type_name("FILE.h5");
     add_common(*command, options->common);
-    command->footer("Example: sphvv stability stability/acoustic --scheme wcsph:kernel=cubic_spline\n"
-                    "Exit status: 0 all verdicts pass; 1 one failed; 2 wrong use, nothing was run.");
+    command->footer(
+        "Example: sphvv stability stability/acoustic --scheme wcsph:kernel=cubic_spline\n"
+        "Exit status: 0 all verdicts pass; 1 one failed; 2 wrong use, nothing was run; 3 a scene ended "
+        "early that must not.");
     command->callback([options, &act, &command_line] {
         act = [options, &command_line] { return stability(*options, command_line); };
     });

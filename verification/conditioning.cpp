@@ -519,6 +519,10 @@ private:
     }
 
     void check_any(const Group& group) {
+        add({subject(group), "matrices whose solve did not converge",
+             static_cast<double>(std::ranges::count(group, false, &Conditioning::converged)), 0, 0,
+             "semidefinite or nearly so, with a source that has a solution: within the solver's own limit of "
+             "iterations"});
         add({subject(group), "|b - A p|/|b| where the solver says that it converged",
              worst(group, [](const Conditioning& row) { return row.residual; }), 0,
              1.1 * conditioning_tolerance,
@@ -778,7 +782,9 @@ void add_to_document(std::span<const ConditioningResults> results, Tree& documen
                                             row.condition_jacobi, row.diagonal_ratio, conditioning_tolerance))
                                       : Tree(nullptr)},
                  {"iterations_two_level", row.iterations_two_level},
-                 {"tolerance", 1}, // of a baseline, on iterations
+                 // Of a baseline, on iterations. The residual of Bi-CGSTAB comes down in leaps: sources that
+                 // differ by 4e-16 take 19 to 22.
+                 {"tolerance", row.problem.schwaiger ? 5 : 1},
                  {"converged", row.converged},
                  {"residual", row.residual}});
         }

@@ -121,9 +121,13 @@ void add_to_document(std::span<const ExtremeResult> results, Tree& document) {
 }
 
 int exit_status(std::span<const ExtremeResult> results) {
-    return std::ranges::any_of(results, [](const ExtremeResult& result) {
-        return result.verdict != "PASS" && result.row.waiver.empty();
-    });
+    int status = 0;
+    for (const ExtremeResult& result : results) {
+        if (result.verdict != "PASS" && result.row.waiver.empty()) {
+            status = std::max(status, result.row.fate != Fate::ends && !result.outcome.survived ? 3 : 1);
+        }
+    }
+    return status;
 }
 
 } // namespace sphvv::verification

@@ -32,11 +32,11 @@ std::string_view to_string(Limit limit);
 std::optional<LatticeState> lattice_state(const LatticeScene& scene);
 Stepping stepping_of(const LatticeScene& scene);
 
-/// What a disturbance of the velocities, at random by 1e-8 of the sound speed or 1e-6 of U, does in 600 steps
-/// of dt (s): it grows where the largest energy of some wave vector in the last 200 is more than twice that
-/// in the 200 before, or where the run ends. In a lattice of an incompressible scheme that moves, the
-/// positions are disturbed, by 1e-6 dx: a velocity that stays what it is would displace particles more and
-/// more, which is no growth.
+/// What a disturbance of the velocities, at random by 1e-8 of the sound speed or 1e-6 of U (1e-4 of U where
+/// the density is summed, whose rounding is noise), does in 600 steps of dt (s): it grows where the largest
+/// energy of some wave vector in the last 200 is more than twice that in the 200 before, or where the run
+/// ends. In a lattice of an incompressible scheme that moves, the positions are disturbed, by 1e-6 dx: a
+/// velocity that stays what it is would displace particles more and more, which is no growth.
 struct Disturbance {
     bool grows;
     double growth; ///< factor in amplitude per step, of the k that grows most; infinite if the run ended

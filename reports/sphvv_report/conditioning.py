@@ -96,7 +96,7 @@ def condition_picture(name, rows, stamp):
         ("Schwaiger (singular values)", lambda row: not is_morris(row), "condition", dict(color=SCHWAIGER, marker="s", markerfacecolor="none")),
         ("theory: lattice sums", is_morris, "theory", THEORY)], stamp)
     return figures.Picture(name, "Condition number of the pressure equation against the number of particles, disorder, and the share of them with "
-                                 "p = 0 at the surface. It grows like N in the plane, little with disorder, and as the square of the depth below a surface.",
+                                 "p = 0 at the surface. Theory: like N in the plane, as the square of the depth below a surface.",
                            drawing)
 
 
@@ -107,7 +107,7 @@ def iterations_picture(name, rows, stamp):
         ("conjugate gradients, two levels", is_morris, "iterations_two_level", dict(color=TWO_LEVELS, marker="^")),
         ("Schwaiger: Bi-CGSTAB, Jacobi", lambda row: not is_morris(row), "iterations_jacobi", dict(color=SCHWAIGER, marker="s", markerfacecolor="none"))],
         stamp)
-    return figures.Picture(name, "Iterations until the residual is 1e-8 of the source. On two levels they do not grow with the number of particles.",
+    return figures.Picture(name, "Iterations until the residual is 1e-8 of the source. Theory of two levels: bounded whatever the number of particles.",
                            drawing)
 
 

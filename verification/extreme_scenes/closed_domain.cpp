@@ -155,10 +155,9 @@ std::vector<ExtremeRow> rows() {
             .name = "a source without a solution",
             .scheme = scheme,
             .must = "fluid asked to leave a closed box stays; error: largest kinetic energy over its start",
-            .why =
-                "u = x is a gradient, which the pressure takes off whole: the projection is orthogonal, "
-                "sound "
-                "keeps the energy, and the mean of the source, which no pressure can make, is projected out",
+            .why = "a projection is orthogonal and sound keeps the energy, so it does not grow, if the mean "
+                   "of the "
+                   "source, which no pressure can make, is taken out of it",
             .fate = Fate::bounded,
             .bound = 1,
             .run = expand};

@@ -225,11 +225,8 @@ std::vector<ExtremeRow> rows() {
         }
         const bool falls = row.scheme == "isph_lee" || row.scheme == "isph_asai";
         if (falls && row.name == "a film of 1 row on a bed") {
-            row.must = "ends: falls through the bed";
-            row.why = "p = 0 at the row, which the symmetric sum holds up with its images' share of the "
-                      "weight only";
-            row.fate = Fate::ends;
-            row.diagnoses = {"position not finite or outside the domain"};
+            row.waiver = "p = 0 at the row, which the symmetric sum holds up with its images' share of the "
+                         "weight only: it falls through the bed";
         }
         if (row.scheme == "isph_dfs" && row.name == "impact of two patches: symmetry") {
             row.waiver =

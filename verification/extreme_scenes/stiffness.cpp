@@ -194,7 +194,7 @@ void add_too_long_steps(std::vector<ExtremeRow>& all) {
         {.name = "sound over its limit",
          .scheme = "wcsph",
          .must = must,
-         .why = "dt = 10 (0.4 h/c0), where linear theory has the limit below 4 of them (stability/acoustic)",
+         .why = "dt = 10 (0.4 h/c0), where linear theory has the limit below 6 of them (stability/acoustic)",
          .fate = Fate::ends,
          .diagnoses = blown_up,
          .run = [](const std::string& of) {

@@ -73,6 +73,19 @@ TEST(StabilityMaps, CountThePointsThatTheoryMisses) {
     EXPECT_EQ(exit_status(results), 1);
 }
 
+TEST(StabilityMaps, AreInconclusiveWhereMostPointsGrowTooSlowlyToTell) {
+    StabilityMap map{};
+    map.x = {1, 2, 3};
+    map.y = {1};
+    map.theory = {1.003, 1.003, 1.5};
+    map.grows = {0, 1, 1};
+    judge(map);
+    EXPECT_EQ(map.verdict, "INCONCLUSIVE");
+    map.grows = {0, 1, 0};
+    judge(map);
+    EXPECT_EQ(map.verdict, "FAIL");
+}
+
 // Just below and above the limit of theory the solver's disturbances keep and grow: the rate is that of
 // theory, too.
 TEST(Disturbances, GrowBeyondTheLimitAtTheRateOfTheory) {
