@@ -366,7 +366,6 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     // is about twice the largest diagonal.
     const double unit = std::numeric_limits<double>::epsilon() * 2 * diagonal_.cwiseAbs().maxCoeff();
     const double aim = options_.tolerance * source_.norm();
-    bool mistaken = false; // the solver says that it converged, and its residual formed anew says not
     const auto run = [&](auto&& solver, int products_per_iteration) {
         solver.setTolerance(options_.tolerance);
         solver.setMaxIterations(options_.maximum_iterations);
@@ -377,7 +376,6 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
         result.iterations += iterations;
         result.residual = solver.error();
         result.converged = solver.info() == Eigen::Success;
-        mistaken = false;
         int products = 1 + products_per_iteration * iterations;
         // The solvers carry the residual along; what they lose of it is of the size of the largest vector on
         // their way (Greenbaum 1997). On that of conjugate gradients it is the guess or the solution, on that
@@ -395,7 +393,6 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
             result.residual = residual / source_.norm();
             // No solver gets below the error of the product that tells.
             result.converged = residual <= aim + (1 + iterations) * unit * solution.norm();
-            mistaken = !result.converged;
         }
         result.matrix_entries += (neighbours_->pairs() + size()) * std::int64_t{products};
     };
@@ -422,14 +419,6 @@ LinearSolve PressurePoisson<Dim>::solve(double* pressure) {
     run_from_guess();
     if (!result.converged && !from_nothing) {
         start_from_zero(); // the residual of a guess far larger than the solution ends at its round-off
-        run_from_guess();
-    }
-    if (!result.converged && mistaken) {
-        // One step of iterative refinement: from what there is, without its mean, with a residual that is
-        // true.
-        if (singular()) {
-            remove_mean(p.data(), size());
-        }
         run_from_guess();
     }
     if (singular()) {
