@@ -33,6 +33,10 @@ PointScene shear_wave(int columns) {
                      .viscosity = 0.1,
                      .time_step = 0.02,
                      .settings = exact_settings()};
+    // Places 4000 dx from the origin are rounded to 4000 eps/2 of dx, so the weights of two particles on one
+    // another, one of them by an image, differ by a few times that: the matrix is symmetric to 1e-12 and no
+    // residual comes below.
+    scene.settings.insert_or_assign("pressure_tolerance", "1e-11");
     using Vector = solver::Vector<2>;
     scene.walls = {solver::shapes::plane<2>("bed", Vector(0, 0), Vector(0, 1), solver::Slip::free_slip),
                    solver::shapes::plane<2>("lid", Vector(0, 1), Vector(0, -1), solver::Slip::free_slip)};

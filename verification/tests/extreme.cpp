@@ -49,7 +49,12 @@ TEST(ExtremeRows, ThatThrowFailAndKeepTheOthersRunning) {
     EXPECT_EQ(result.verdict, "FAIL");
     EXPECT_NE(result.reason.find("a bug"), std::string::npos);
     const std::vector<ExtremeResult> results{result};
-    EXPECT_EQ(exit_status(results), 1);
+    EXPECT_EQ(exit_status(results), 3);
+    EXPECT_EQ(exit_status(std::vector{run_extreme(row_of(Fate::bounded, {true, "", 0.11, 5}))}), 1);
+    EXPECT_EQ(
+        exit_status(std::vector{run_extreme(row_of(Fate::bounded, {false, "kinetic energy above", 0, 5}))}),
+        3);
+    EXPECT_EQ(exit_status(std::vector{run_extreme(row_of(Fate::ends, {true, "", 0, 5}))}), 1);
     nlohmann::ordered_json document;
     add_to_document(results, document);
     EXPECT_FALSE(document["extreme_rows"][0]["passes"]);
