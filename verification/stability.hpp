@@ -32,17 +32,19 @@ std::string_view to_string(Limit limit);
 std::optional<LatticeState> lattice_state(const LatticeScene& scene);
 Stepping stepping_of(const LatticeScene& scene);
 
+constexpr int steps_of_a_part = 200;
+
 /// What a disturbance of the velocities, at random by 1e-8 of the sound speed or 1e-6 of U (1e-4 of U where
-/// the density is summed, whose rounding is noise), does in 600 steps of dt (s): it grows where the largest
-/// energy of some wave vector in the last 200 is more than twice that in the 200 before, or where the run
-/// ends. In a lattice of an incompressible scheme that moves, the positions are disturbed, by 1e-6 dx: a
-/// velocity that stays what it is would displace particles more and more, which is no growth.
+/// the density is summed, whose rounding is noise), does in three parts of so many steps of dt (s): it grows
+/// where the largest energy of some wave vector in the last part is more than twice that in the part before,
+/// or where the run ends. In a lattice of an incompressible scheme that moves, the positions are disturbed,
+/// by 1e-6 dx: a velocity that stays what it is would displace particles more and more, which is no growth.
 struct Disturbance {
     bool grows;
     double growth; ///< factor in amplitude per step, of the k that grows most; infinite if the run ended
     std::string diagnosis; ///< of a run that ended
 };
-Disturbance disturb(const LatticeScene& scene, double dt);
+Disturbance disturb(const LatticeScene& scene, double dt, int part = steps_of_a_part);
 
 /// Two swept parameters.
 enum class MapAxes {
@@ -63,6 +65,7 @@ struct StabilityStudy {
     std::vector<std::string> schemes; ///< variants, kernel and h/dx among their settings
     MapAxes map = MapAxes::none;      ///< growth over two parameters, in place of limits
     int n = 16;                       ///< particles along a side of the box
+    int part = steps_of_a_part;       ///< of the runs of a map
 };
 std::span<const StabilityStudy> stability_studies();
 
@@ -105,6 +108,7 @@ struct StabilityMap {
     std::string verdict;
     std::string reason;
     double seconds;
+    int part = steps_of_a_part; ///< a run has three
 };
 
 struct StabilityResults {
