@@ -418,9 +418,15 @@ private:
         if (settled(demand.is_null() && old_demand.is_null(), demand == old_demand)) {
             return;
         }
+        const auto near = [](const ResultTree& x, const ResultTree& y) {
+            return x.is_number() && y.is_number() &&
+                   std::abs(y.get<double>() - x.get<double>()) <=
+                       round_off_of_operators * std::abs(x.get<double>());
+        };
+        const bool lists = old_demand.is_array() && demand.is_array() && old_demand.size() == demand.size();
+        const bool close = lists ? std::ranges::equal(old_demand, demand, near) : near(old_demand, demand);
         const double x = number_of(*before.tree, name);
         const double y = number_of(*after.tree, name);
-        const bool close = std::abs(y - x) <= round_off_of_operators * std::abs(x);
         note(close ? Change::round_off : Change::demand, before.subject, before.where, name,
              text_of(old_demand), text_of(demand), old_demand.is_number() ? y / x : 1);
     }

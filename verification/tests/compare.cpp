@@ -148,8 +148,11 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
                                                      {"high", 1.05},
                                                      {"measured", 4.51},
                                                      {"passes", true}}});
-    before["stability_maps"] = ResultTree::array(
-        {{{"study", "stability/tensile_map"}, {"scheme", "wcsph"}, {"disagreements", 0}, {"passes", true}}});
+    before["stability_maps"] = ResultTree::array({{{"study", "stability/tensile_map"},
+                                                   {"scheme", "wcsph"},
+                                                   {"theory", {1.0, 1.02, 1.03}},
+                                                   {"disagreements", 0},
+                                                   {"passes", true}}});
     before["extreme_rows"] = ResultTree::array({{{"name", "a spray"},
                                                  {"scheme", "wcsph"},
                                                  {"fate", "bounded"},
@@ -204,6 +207,9 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
           {"stability_limits", "high", ResultTree(2.0), Change::demand},
           {"stability_limits", "passes", ResultTree(false), Change::verdict},
           {"stability_maps", "disagreements", ResultTree(3), Change::error_level},
+          {"stability_maps", "theory", ResultTree({1.0, 1.0200000001, 1.03}), Change::round_off},
+          {"stability_maps", "theory", ResultTree({1.0, 1.021, 1.03}), Change::demand},
+          {"stability_maps", "theory", ResultTree({1.0, 1.02}), Change::demand},
           {"extreme_rows", "bound", ResultTree(1.0), Change::demand},
           {"extreme_rows", "fate", ResultTree("survives"), Change::demand},
           {"extreme_rows", "passes", ResultTree(false), Change::verdict},
