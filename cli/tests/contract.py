@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The command line's contract: exit status, one clear sentence for every mistake, nothing half-written, same bits on any
 number of threads. Called with the path of the sphvv executable."""
 

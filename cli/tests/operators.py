@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The contract of `sphvv operators`: exit status, one clear sentence for every mistake, the members of the result file, the same
 bits on any number of threads, nothing half-written when it is stopped. Called with the path of the sphvv executable."""
 

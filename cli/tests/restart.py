@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What becomes of a run that is stopped: killed at any time and resumed it gives the same bits as one that was not, and what
 was written stays readable. Called with the path of the sphvv executable."""
 
