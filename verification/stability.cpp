@@ -220,6 +220,7 @@ StabilityLimit find_limit(const StabilityStudy& study, const std::string& scheme
         result.theory_by = "fold";
         result.theory = fold_step(flow) / result.published;
         result.low = 1 / result.theory;
+        result.high = resolution; // the fold is a bound from above
         result.reason =
             "the arrangement is kept at the published step, and lost where the drift folds the fluid, n = " +
             std::to_string(flow.n);
