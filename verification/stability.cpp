@@ -238,8 +238,8 @@ StabilityLimit find_limit(const StabilityStudy& study, const std::string& scheme
     };
     double low = least;
     if (!grows(low)) {
-        double high = std::min(2 * low, most);
-        bool found = grows(high);
+        double high = low;
+        bool found = false;
         while (!found && high < most) {
             low = high;
             high = std::min(2 * low, most);

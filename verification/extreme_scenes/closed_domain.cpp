@@ -156,8 +156,7 @@ std::vector<ExtremeRow> rows() {
             .scheme = scheme,
             .must = "fluid asked to leave a closed box stays; error: largest kinetic energy over its start",
             .why = "a projection is orthogonal and sound keeps the energy, so it does not grow, if the mean "
-                   "of the "
-                   "source, which no pressure can make, is taken out of it",
+                   "of the source, which no pressure can make, is taken out of it",
             .fate = Fate::bounded,
             .bound = 1,
             .run = expand};
