@@ -14,7 +14,7 @@ target_compile_options(sphvv_options INTERFACE
   # Clang says which `omp simd` loops it leaves as they are: at -O1, all.
   $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>
   $<$<BOOL:${SPHVV_WARNINGS_AS_ERRORS}>:-Werror>
-  $<$<AND:$<BOOL:${SPHVV_NATIVE}>,$<CONFIG:Release>>:-march=native>
+  $<$<AND:$<BOOL:${SPHVV_MARCH}>,$<CONFIG:Release>>:-march=${SPHVV_MARCH}>
   # Sums over neighbours carry their own `omp simd reduction`; no other reassociation is allowed, so that the
   # same binary gives the same bits. Neither errno nor trapping is used.
   -fno-math-errno -fno-trapping-math)
