@@ -133,8 +133,13 @@ int refuse_to_bless(const std::string& why) {
 }
 
 int bless(const BlessOptions& options) {
+    check_writable(options.common.json, "--json");
     const ResultTree results = read_current(options.current);
     const std::optional<ResultTree> old = old_baseline(options.baseline);
+    if (!old && !options.common.json.empty()) {
+        throw UserError("--json tells what changes against the old baseline, and there is none in '" +
+                        options.baseline + "'");
+    }
     ResultTree reduced;
     try {
         reduced = verification::reduced_for_baseline(results, options.allow_dirty);
@@ -143,7 +148,9 @@ int bless(const BlessOptions& options) {
     }
     if (old) {
         const Comparison comparison = verification::compare(*old, reduced);
-        std::cout << "against the old baseline:\n" << markdown(comparison);
+        if (options.common.json != "-") {
+            std::cout << "against the old baseline:\n" << markdown(comparison);
+        }
         if (!options.common.json.empty()) {
             write_text(options.common.json, tree_of(comparison, side(options.baseline, *old),
                                                     side(options.current.front(), results))

@@ -26,9 +26,12 @@ class Study:
 
 
 def listed(sphvv, tier):
-    """The studies of a tier, in the order of the list."""
-    done = subprocess.run([sphvv, "list", "studies", "--json", "-"], check=True, capture_output=True, text=True)
-    return [study for study in map(Study, json.loads(done.stdout)) if study.tier == tier]
+    """The studies of a tier, in the order of the list. Throws ValueError, a sentence, for a program that is not sphvv."""
+    done = subprocess.run([sphvv, "list", "studies", "--json", "-"], check=False, capture_output=True, text=True)
+    try:
+        return [study for study in map(Study, json.loads(done.stdout)) if study.tier == tier]
+    except (ValueError, KeyError, TypeError):
+        raise ValueError(f"{sphvv} does not list its studies, so it is no sphvv of this version") from None
 
 
 def chosen(studies, names):

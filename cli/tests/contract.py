@@ -250,6 +250,11 @@ class Contract(unittest.TestCase):
                 self.assertEqual(path.read_bytes(), content)
         self.assert_refused(sphvv("compare", str(out), str(self.folder / "missing.h5")), "missing.h5")
         self.assert_refused(sphvv("bless", str(out), "--allow-dirty", "--baseline", str(self.folder / "nowhere" / "b.json")), "nowhere")
+        new = self.folder / "new.json"  # nothing changes against no old baseline
+        self.assert_refused(sphvv("bless", str(out), "--allow-dirty", "--baseline", str(new), "--json", "-"), "no", "new.json")
+        self.assertFalse(new.exists())
+        self.assertEqual(sphvv("bless", str(out), "--allow-dirty", "--baseline", str(new)).returncode, 0)
+        self.assertTrue(json.loads(sphvv("bless", str(out), "--allow-dirty", "--baseline", str(new), "--json", "-").stdout)["compared"])
         operators = self.folder / "operators.json"  # of another command: nothing in common
         operators.write_text(json.dumps({
             "format": "sphvv-baseline", "format_version": 1,

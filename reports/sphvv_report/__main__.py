@@ -34,6 +34,13 @@ def parse_arguments(arguments):
     return parser.parse_args(arguments)
 
 
+def refuse_unwritable(path, out):
+    """Before anything is written, the folder of the page among it: a summary that cannot be written must not cost a page."""
+    folder = os.path.dirname(path) or "."
+    if path != "-" and os.path.abspath(folder) != os.path.abspath(out) and (os.path.isdir(path) or not os.access(path if os.path.exists(path) else folder, os.W_OK)):
+        raise ResultError(f"--json {path} cannot be written: {'it is a folder' if os.path.isdir(path) else 'no such folder, or no right to write there'}")
+
+
 def write_summary(path, summary):
     """Writes the machine-readable summary to a file, or to standard output for `-`."""
     text = json.dumps(summary, indent=1, ensure_ascii=False) + "\n"
@@ -48,6 +55,8 @@ def main(arguments=None):
     """Runs the command and returns its exit status."""
     options = parse_arguments(arguments)
     try:
+        if options.json:
+            refuse_unwritable(options.json, options.out)
         results = merge([read_result(path) for path in options.files])
         # Imported late: matplotlib takes most of a second, which a refused file should not cost.
         from .changes import read_changes

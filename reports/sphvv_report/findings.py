@@ -254,9 +254,23 @@ def early_end_finding(group, scheme):
     if not studies:
         return []
     expected = all(expects_early_end(study) for study in studies)
-    title = "ended early, as expected" if expected else "ended early"
-    return [Finding(4 if expected else 1, "lost-expected" if expected else "lost", f"{group.label}, {scheme}", title,
-                    early_end_reasons(group, scheme), studies[0]["anchor"])]
+    waived = all(study["fit"]["waiver"] or expects_early_end(study) for study in studies)
+    severity, kind, title = ((4, "lost-expected", "ended early, as expected") if expected else (3, "waived", "ended early, waived") if waived
+                             else (1, "lost", "ended early"))
+    return [Finding(severity, kind, f"{group.label}, {scheme}", title, early_end_reasons(group, scheme), studies[0]["anchor"])]
+
+
+def conservation_findings(group):
+    """Runs that lost what their scheme claims to conserve."""
+    return [Finding(0, "fail", f"{group.label}, {run['scheme']}", f"lost what it claims to conserve: {run['budget']['lost']}", [f"n = {numbers.integer(run['n'])}"],
+                    group.anchor)
+            for run in group.runs if run["survived"] and (run.get("budget") or {}).get("lost")]
+
+
+def goal_findings(group):
+    """Goals of our own that a run misses; claims of the literature that ours does not bear out are no fault of a build."""
+    return [Finding(0, "fail", f"{group.label}, goal {claim['id']}", f"missed: {claim['ours']}", [claim["text"]], group.anchor)
+            for claim in group.claims if claim.get("binding") and not claim["agrees"]]
 
 
 def verdict_finding(place, study):
@@ -278,6 +292,7 @@ def findings(groups):
     for group in groups:
         for scheme in group.schemes:
             found += early_end_finding(group, scheme)
+        found += conservation_findings(group) + goal_findings(group)
         for study in group.studies:
             found += verdict_finding(f"{group.label}, {study['scheme']}, {study['field']}", study)
     return found
@@ -313,10 +328,11 @@ def summary(groups, found):
     cases, schemes = unique(group.case for group in groups), unique(study["scheme"] for study in studies)
     text = f"{plural(len(schemes), 'scheme')} on {plural(len(cases), 'case')} in {plural(len(groups), 'setting')}: "
     text += verdict_counts(studies)
-    ends = [finding for finding in found if finding.status in ("lost", "lost-expected")]
+    ends = [finding for finding in found if finding.title.startswith("ended early")]
     if ends:
-        expected = sum(finding.status == "lost-expected" for finding in ends)
-        known = "as expected" if expected == len(ends) else f"{expected} of them as expected" if expected else "unexpectedly"
+        expected = sum(finding.status != "lost" for finding in ends)
+        how = "as expected or waived" if any(finding.status == "waived" for finding in ends) else "as expected"
+        known = how if expected == len(ends) else f"{expected} of them {how}" if expected else "unexpectedly"
         text += f"; {plural(len(ends), 'ladder')} ended early, {known}"
     return text + "."
 

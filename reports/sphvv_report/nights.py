@@ -1,7 +1,8 @@
 """The history of nightly runs: what every night found, which verdicts changed from one to the next, and trends of error, order, work and time.
 
 The file has one JSON object a line (scripts/nightly): date, tier, revision, seconds, and `rows`, one a ladder: group, scheme, field, order, ci95,
-verdict, waived, n, and of the finest rung l2, pair_evaluations, matrix_entries, seconds.
+verdict, waived, ended (runs that ended early), n, and of the finest rung l2, pair_evaluations, matrix_entries, seconds; or one a check, with
+`failing`, what is not as it must be. `complete`: all studies of the tier were run; `started` and `program` tell which night it is.
 """
 
 import json
@@ -34,8 +35,8 @@ def complain(night):
     return f"{wrong} is not a number" if wrong else ""
 
 
-def read_history(path):
-    """The nights of the tier of the last one, oldest first. Raises ResultError."""
+def lines_of(path):
+    """Every night of a history, oldest first. Raises ResultError, a sentence that names file and line."""
     nights = []
     try:
         with open(path, encoding="utf-8") as stream:
@@ -52,9 +53,26 @@ def read_history(path):
         raise ResultError(f"{path}: {(error.strerror or str(error)).lower()}") from None
     except UnicodeDecodeError:
         raise ResultError(f"{path}: not a history, but something that is no text") from None
+    return nights
+
+
+def read_history(path):
+    """The nights of the tier of the last one, oldest first; of a night that several calls have made, one line: the last
+    complete one, or the last. Raises ResultError."""
+    nights = lines_of(path)
     if not nights:
         raise ResultError(f"{path}: the history is empty")
-    return [night for night in nights if night["tier"] == nights[-1]["tier"]]
+    last = {}
+    for index, night in enumerate(nights):
+        key = (night["started"], night.get("program")) if isinstance(night.get("started"), str) else index
+        if night["tier"] == nights[-1]["tier"] and (is_complete(night) or not (key in last and is_complete(last[key]))):
+            last[key] = night
+    return list(last.values())
+
+
+def is_complete(night):
+    """Of an older history every night is."""
+    return night.get("complete", True)
 
 
 def key_of(row):
@@ -77,14 +95,19 @@ def ladders(nights):
     return {key: [rows.get(key) for rows in by_night] for key in findings.unique(key for rows in by_night for key in rows)}
 
 
-def verdict_changes(courses):
-    """(key, index of the night, word before, word now) of every verdict that is not that of the night before, or came or went."""
+def verdict_changes(courses, nights):
+    """(key, index of the night, word before, word now) of every verdict that is not that of the last night that had it, or came or
+    went. A night of a part of the studies says nothing of the others."""
     changed = []
     for key, course in courses.items():
-        for index in range(1, len(course)):
-            before, now = ("not run" if row is None else word(row) for row in course[index - 1:index + 1])
-            if before != now:
+        before = None  # nobody knows yet
+        for index, row in enumerate(course):
+            if row is None and not is_complete(nights[index]):
+                continue
+            now = "not run" if row is None else word(row)
+            if before not in (None, now):
                 changed.append((key, index, before, now))
+            before = now
     return sorted(changed, key=lambda change: (-change[1], change[0]))
 
 
@@ -116,7 +139,7 @@ def nights_table(names, nights, changed):
     words = findings.unique(word(row) for night in nights for row in night["rows"])
     return Table(names.unique("nights"), f"Nights of the {nights[-1]['tier']} tier, newest first",
                  [Column("date", "date"), Column("shown_revision", "revision"), Column("revision", "full revision", shown=False),
-                  Column("seconds", "took", "significant", "s"), Column("ladders", "ladders", "integer")]
+                  Column("seconds", "took", "significant", "s"), Column("ladders", "ladders and checks", "integer")]
                  + [Column(each, each, "integer") for each in words] + [Column("changed", "verdicts changed", "integer")], rows[::-1])
 
 
@@ -190,7 +213,7 @@ def view(page):
     if not nights:
         return None
     courses = ladders(nights)
-    changed = verdict_changes(courses)
+    changed = verdict_changes(courses, nights)
     pictures = {}
     for key in filter(lambda key: is_ladder(courses[key]), courses):
         pictures.setdefault((key[0], key[2]), {})[key] = courses[key]

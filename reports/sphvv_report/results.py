@@ -51,7 +51,7 @@ RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?"
 CURVE = {"scheme": "text", "n": "numbers", "error": "numbers", "cost": "numbers"}
 FRONT_ROW = {"scheme": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
 FRONT = {"group": "text", "field": "text", "norm": "text", "cost": "text", "curves": [CURVE], "rows": [FRONT_ROW]}
-CLAIM = {"group": "text", "id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "agrees": "flag"}
+CLAIM = {"group": "text", "id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "agrees": "flag", "binding?": "flag"}
 OPERATOR = {"name": "text", "summary": "text", "formula": "text", "source": "text", "approximates": "text", "order_source": "text"}
 OPERATOR_SAMPLE = {"n": "number", "h": "number", "dx": "number", "particles": "number", "l1": "number", "l2": "number",
                    "linf": "number", "l1_abs": "number", "l2_abs": "number", "linf_abs": "number", "l2_spread": "number",
@@ -392,6 +392,9 @@ def check_result(tree):
             check_profile(profile, f"runs[{index}].profiles[{number}]")
     for index, chart in enumerate(tree["stability_maps"]):
         check_map(chart, f"stability_maps[{index}]")
+    for index, row in enumerate(tree["extreme_rows"]):
+        if row["passes"] and row["fate"] == "bounded" and None in (row["error"], row["bound"]):
+            raise ValueError(f"extreme_rows[{index}] passes its bound and has no error or no bound")
     if not any(tree[kind] for kind in EVIDENCE):
         raise ValueError("it holds no study, no check and no seeded fault")
 

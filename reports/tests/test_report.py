@@ -855,6 +855,13 @@ class Failing(WithFolder):
     def test_output_is_a_file(self):
         self.assert_fails(self.source, self.source, "cannot write")
 
+    def test_a_summary_that_cannot_be_written_costs_no_page(self):
+        for target, words in ((self.path("nowhere", "s.json"), "no such folder"), (self.folder, "it is a folder")):
+            status, _, error = run(self.source, "--out", self.path("page"), "--json", target)
+            self.assertEqual(status, 2)
+            self.assertIn(words, error)
+            self.assertFalse(os.path.exists(self.path("page")))
+
     def test_folder_in_the_way_leaves_everything_as_it_was(self):
         os.makedirs(self.path("out", "index.html"))
         self.assert_fails(self.source, self.path("out"), "in the way")
@@ -996,13 +1003,46 @@ class Pieces(unittest.TestCase):
 
     def test_changes_of_verdicts_over_nights(self):
         courses = nights.ladders(synthetic.nights())
-        changed = nights.verdict_changes(courses)
+        changed = nights.verdict_changes(courses, synthetic.nights())
         velocity = ("taylor_green re=100", "isph_dfs", "velocity")
         self.assertEqual(changed, [(velocity, 2, "FAIL", "PASS"), (velocity, 1, "PASS", "FAIL")])
         self.assertEqual([key for key, course in courses.items() if nights.has_moved(course)], [velocity])
         lines = synthetic.nights()
         del lines[1]["rows"][1]
-        self.assertIn((("taylor_green re=100", "isph_dfs", "pressure"), 1, "PASS", "not run"), nights.verdict_changes(nights.ladders(lines)))
+        self.assertIn((("taylor_green re=100", "isph_dfs", "pressure"), 1, "PASS", "not run"), nights.verdict_changes(nights.ladders(lines), lines))
+        lines[1]["complete"] = False  # a night of a part of the studies
+        self.assertNotIn("not run", str(nights.verdict_changes(nights.ladders(lines), lines)))
+
+    def test_of_several_lines_of_one_night_the_last_counts(self):
+        lines = synthetic.nights()
+        for line, started in zip(lines, ("one", "two", "two")):
+            line.update(started=started, program="p")
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "history.jsonl")
+            with open(path, "w", encoding="utf-8") as stream:
+                stream.writelines(json.dumps(line) + "\n" for line in lines)
+            self.assertEqual([night["date"] for night in nights.read_history(path)], [lines[0]["date"], lines[2]["date"]])
+
+    def test_a_lost_budget_and_a_missed_goal_are_findings(self):
+        tree = synthetic.variants()
+        group = findings.Group("taylor_green re=100", "taylor_green", runs=tree["runs"], claims=[dict(claim, binding=claim["id"] == "XU-TG 5") for claim in tree["claims"]])
+        group.anchor = "g"
+        lost = [run for run in tree["runs"] if run["survived"] and run.get("budget", {}).get("lost")]
+        self.assertTrue(lost)
+        found = findings.conservation_findings(group)
+        self.assertEqual(len(found), len(lost))
+        self.assertEqual({(finding.severity, finding.status) for finding in found}, {(0, "fail")})
+        self.assertIn("lost what it claims to conserve: momentum", found[0].title)
+        self.assertEqual([finding.where for finding in findings.goal_findings(group)], ["taylor_green re=100, goal XU-TG 5"])
+
+    def test_an_early_end_that_is_waived_is_known(self):
+        study = {"scheme": "wcsph", "field": "velocity", "anchor": "s", "expected": {"low": None, "high": None, "fate": None},
+                 "fit": {"verdict": "FAIL", "waiver": "", "reason": ""}, "samples": [{"n": 40, "survived": False, "diagnosis": "pairs"}]}
+        group = findings.Group("g", "c", studies=[study])
+        self.assertEqual([(finding.severity, finding.status) for finding in findings.early_end_finding(group, "wcsph")], [(1, "lost")])
+        study["fit"]["waiver"] = "pairs pass below 0.25 dx"
+        self.assertEqual([(finding.severity, finding.status) for finding in findings.early_end_finding(group, "wcsph")], [(3, "waived")])
+        self.assertIn("1 ladder ended early, as expected or waived", findings.summary([group], findings.early_end_finding(group, "wcsph")))
 
     def test_colours_of_chips_are_legible(self):
         """Text on its ground at 4.5 : 1 or better, read from the style sheet itself."""

@@ -232,6 +232,12 @@ class Refusing(InFolder):
         refuse(lambda tree: tree.update(operator_costs=[{"operator": 7}]), "operator_costs[0].operator is not a text")
         refuse(lambda tree: tree.update(seeded_faults=[dict(tree["seeded_faults"][0], caught="yes")]), "seeded_faults[0].caught is not a boolean")
 
+    def test_a_scene_that_passes_its_bound_has_an_error(self):
+        tree = {**synthetic.workbench(), **synthetic.stability()}
+        tree["extreme_rows"][0].update(passes=True, error=None)
+        with self.assertRaisesRegex(ValueError, r"extreme_rows\[\d+\] passes its bound"):
+            results.check_result(tree)
+
     def test_the_demand_of_a_published_figure_may_be_missing(self):
         tree = synthetic.workbench()  # as older files have it
         tree["published_figures"][0].update(reference=57.0, tolerance=0.02, is_bound=False)

@@ -152,6 +152,8 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
                                                    {"scheme", "wcsph"},
                                                    {"theory", {1.0, 1.02, 1.03}},
                                                    {"disagreements", 0},
+                                                   {"undecided", 1},
+                                                   {"measured", {1.0, nullptr, 1.031}},
                                                    {"passes", true}}});
     before["extreme_rows"] = ResultTree::array({{{"name", "a spray"},
                                                  {"scheme", "wcsph"},
@@ -197,6 +199,17 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
         EXPECT_TRUE(compare(held, later).fails()) << error;
         later["extreme_rows"][0]["fate"] = "survives";
     }
+    // Below a bound of physics, not of round-off, there are digits to compare.
+    ResultTree physics = before;
+    physics["extreme_rows"][0]["bound"] = 1.0;
+    physics["extreme_rows"][0]["error"] = 0.34;
+    ResultTree doubled = physics;
+    doubled["extreme_rows"][0]["error"] = 0.68;
+    EXPECT_EQ(count(compare(physics, doubled), Change::error_level), 1);
+    ResultTree older = baseline;
+    older["stability_maps"][0].erase("undecided");
+    older["stability_maps"][0].erase("measured");
+    EXPECT_FALSE(compare(older, before).fails()) << "a baseline that is older than the member";
     EXPECT_FALSE(
         with([](ResultTree& now) { now["conditioning_rows"][0]["iterations_two_level"] = 25; }).fails());
     for (const auto& [list, name, value, change] :
@@ -207,6 +220,14 @@ TEST(Compare, StabilityAndExtremeScenesAreChecks) {
           {"stability_limits", "high", ResultTree(2.0), Change::demand},
           {"stability_limits", "passes", ResultTree(false), Change::verdict},
           {"stability_maps", "disagreements", ResultTree(3), Change::error_level},
+          {"stability_maps", "undecided", ResultTree(2), Change::error_level},
+          {"stability_maps", "undecided", ResultTree(nullptr), Change::error_level},
+          {"stability_maps", "measured", ResultTree({1.0, nullptr, 1.0311}), Change::round_off},
+          {"stability_maps", "measured", ResultTree({1.0, nullptr, 1.05}), Change::error_level},
+          {"stability_maps", "measured", ResultTree({1.0, 1.02, 1.031}), Change::error_level},
+          {"stability_maps", "measured", ResultTree({1.0, nullptr, nullptr}), Change::error_level},
+          {"stability_maps", "measured", ResultTree({1.0, nullptr}), Change::error_level},
+          {"stability_maps", "measured", ResultTree(nullptr), Change::error_level},
           {"stability_maps", "theory", ResultTree({1.0, 1.0200000001, 1.03}), Change::round_off},
           {"stability_maps", "theory", ResultTree({1.0, 1.021, 1.03}), Change::demand},
           {"stability_maps", "theory", ResultTree({1.0, 1.02}), Change::demand},
@@ -449,7 +470,7 @@ TEST(Compare, EveryKindOfChangeIsSeen) {
         count(after([](ResultTree& t) { t["operator_properties"][0]["passes"] = false; }), Change::verdict),
         1);
     EXPECT_EQ(
-        count(after([](ResultTree& t) { t["published_figures"][0]["value"] = 67.0; }), Change::error_level),
+        count(after([](ResultTree& t) { t["published_figures"][0]["value"] = 66.51; }), Change::error_level),
         1);
     EXPECT_EQ(count(after([](ResultTree& t) { t["operator_studies"].erase(1); }), Change::missing), 1);
     EXPECT_EQ(count(after([](ResultTree& t) { t["studies"][0]["samples"].erase(1); }), Change::missing), 1);
