@@ -10,13 +10,12 @@ struct Formula {
         explicit Indicator(const SurfaceInput<Dim>& input) : radius(input.neighbours->support_radius()) {}
         double operator()(const Row<Dim>& row, int /*i*/) const {
             Lanes found{};
-            Lanes entry{0, 1, 2, 3, 4, 5, 6, 7};
-            const Lanes one = Lanes{} + 1.0;
+            Lanes entry = lanes_of([](int lane) { return lane; });
             const double pairs = row.count;
             for (int k = 0; k < row.padded; k += lane_count) {
                 // Padding lies at distance zero, as a coincident particle does, which counts.
                 const auto inside = (squared_separation<Dim>(row, k) < radius * radius) & (entry < pairs);
-                found += inside ? one : Lanes{};
+                found += select(inside, 1, 0);
                 entry += lane_count;
             }
             return sum(found);

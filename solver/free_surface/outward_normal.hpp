@@ -18,7 +18,7 @@ Vector<Dim> outward_normal(const Row<Dim>& row, const Volume& volume, const Matr
         for (int d = 0; d < Dim; ++d) {
             const Lanes component = weight * load(row.separation[d] + k);
             total[d] += component;
-            size += component < 0 ? -component : component;
+            size += select(component < 0, -component, component);
         }
     }
     const Vector<Dim> S = lane_sums<Dim>(total);

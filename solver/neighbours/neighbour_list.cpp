@@ -140,10 +140,10 @@ void NeighbourList<Dim>::evaluate(Block& block, int begin, int end) {
     const int entries = block.start[end - begin];
     kernel_->slopes({block.squared_distance.data(), static_cast<std::size_t>(entries)}, h_,
                     kernel_->slope_scale(Dim, h_), block.slope.data());
-    Lanes smallest = Lanes{} + far_away;
+    Lanes smallest = far_away;
     for (int k = 0; k < entries; k += lane_count) {
         const Lanes r2 = load(&block.squared_distance[k]);
-        smallest = r2 < smallest ? r2 : smallest;
+        smallest = select(r2 < smallest, r2, smallest);
     }
     block.minimum_squared = far_away;
     for (int l = 0; l < lane_count; ++l) {

@@ -35,7 +35,7 @@ double laplacian_over_density_schwaiger_weights(const Row<Dim>& row, int i, cons
     const double scale = -L.trace() / Dim;
     Lanes total{};
     for (int k = 0; k < row.padded; k += lane_count) {
-        Lanes along = Lanes{} + 1.0;
+        Lanes along = 1;
         for (int d = 0; d < Dim; ++d) {
             along += load(row.separation[d] + k) * LS[d];
         }

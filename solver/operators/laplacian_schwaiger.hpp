@@ -35,7 +35,7 @@ double laplacian_schwaiger_weights(const Row<Dim>& row, const Volume& volume, co
     const double scale = -2 * L.trace() / Dim;
     Lanes total{};
     for (int k = 0; k < row.padded; k += lane_count) {
-        Lanes along = Lanes{} + 1.0;
+        Lanes along = 1;
         for (int d = 0; d < Dim; ++d) {
             along += load(row.separation[d] + k) * LS[d];
         }

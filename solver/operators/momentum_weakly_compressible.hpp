@@ -141,11 +141,10 @@ struct Taylor {
 template <int Dim>
 bool near_surface(const Row<Dim>& row, int i, const double* lowest_eigenvalue) {
     Lanes found{};
-    const Lanes one = Lanes{} + 1.0;
     for (int k = 0; k < row.padded; k += lane_count) {
         const auto surface =
             (gather(lowest_eigenvalue, row.index + k) < surface_eigenvalue) & (load(row.slope + k) != 0);
-        found += surface ? one : Lanes{};
+        found += select(surface, 1, 0);
     }
     return sum(found) > 0 || lowest_eigenvalue[i] < surface_eigenvalue;
 }
@@ -227,7 +226,7 @@ struct MonaghanCleary {
                 along += (fields.u[d][i] - gather(fields.u[d], pairs.j())) * pairs.separation(d);
             }
             const Lanes r2 = squared_separation<Dim>(pairs.row, pairs.k);
-            const Lanes safe = r2 > 0 ? r2 + eta_squared : Lanes{} + 1.0;
+            const Lanes safe = select(r2 > 0, r2 + eta_squared, 1);
             return pressure_forces::central<Dim>(pairs, scale * gather(fields.specific_volume, pairs.j()) *
                                                             pairs.slope() * along / safe);
         };
@@ -245,16 +244,14 @@ struct ArithmeticMean {
 /// is much the smaller.
 struct LogarithmicMean {
     static Lanes doubled(double a, Lanes b) {
-        Lanes result;
-        for (int l = 0; l < lane_count; ++l) {
+        return lanes_of([&](int l) {
             const double sum = a + b[l];
             const double difference = std::abs(a - b[l]);
             // x/artanh x = 1 - x^2/3 - 4 x^4/45 - …; 0 where one of the two is.
-            result[l] = difference < 1e-3 * sum ? sum - difference * difference / (3 * sum)
-                        : a > 0 && b[l] > 0     ? 2 * difference / std::abs(std::log(a / b[l]))
-                                                : 0;
-        }
-        return result;
+            return difference < 1e-3 * sum ? sum - difference * difference / (3 * sum)
+                   : a > 0 && b[l] > 0     ? 2 * difference / std::abs(std::log(a / b[l]))
+                                           : 0;
+        });
     }
 };
 
@@ -293,7 +290,7 @@ struct MonaghanClearyEddy {
                 along += (fields.u[d][i] - gather(fields.u[d], pairs.j())) * pairs.separation(d);
             }
             const Lanes r2 = squared_separation<Dim>(pairs.row, pairs.k);
-            const Lanes safe = r2 > 0 ? r2 + eta_squared : Lanes{} + 1.0;
+            const Lanes safe = select(r2 > 0, r2 + eta_squared, 1);
             const Lanes v_j = gather(fields.specific_volume, pairs.j());
             const Lanes both =
                 mu + Mean::doubled(nu_i, gather(fields.eddy_viscosity, pairs.j())) / (v_i + v_j);

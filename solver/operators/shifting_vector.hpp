@@ -20,18 +20,14 @@ Vector<Dim> shifting_vector(const Row<Dim>& row, double support_radius) {
     std::array<Lanes, Dim> total{};
     Lanes distances{};
     Lanes count{};
-    const Lanes one = Lanes{} + 1.0;
     for (int k = 0; k < row.padded; k += lane_count) {
         const Lanes r2 = squared_separation<Dim>(row, k);
         const auto inside = (r2 > 0) & (r2 < support_radius * support_radius);
-        const Lanes safe = inside ? r2 : one;
-        Lanes r;
-        for (int l = 0; l < lane_count; ++l) {
-            r[l] = __builtin_sqrt(safe[l]);
-        }
-        const Lanes weight = inside ? 1 / (Dim == 2 ? safe * r : safe * safe) : Lanes{};
-        distances += inside ? r : Lanes{};
-        count += inside ? one : Lanes{};
+        const Lanes safe = select(inside, r2, 1);
+        const Lanes r = sqrt(safe);
+        const Lanes weight = select(inside, 1 / (Dim == 2 ? safe * r : safe * safe), 0);
+        distances += select(inside, r, 0);
+        count += select(inside, 1, 0);
         for (int d = 0; d < Dim; ++d) {
             total[d] += weight * load(row.separation[d] + k);
         }

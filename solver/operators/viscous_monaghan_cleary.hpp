@@ -10,9 +10,8 @@ template <int Dim, class Volume>
 Vector<Dim> viscous_monaghan_cleary(const Row<Dim>& row, int i, const std::array<const double*, Dim>& u,
                                     const Volume& volume, double eta_squared) {
     std::array<Lanes, Dim> total{};
-    const Lanes one = Lanes{} + 1.0;
     for (int k = 0; k < row.padded; k += lane_count) {
-        Lanes squared = Lanes{} + eta_squared;
+        Lanes squared = eta_squared;
         Lanes along{};
         for (int d = 0; d < Dim; ++d) {
             const Lanes r = load(row.separation[d] + k);
@@ -20,7 +19,7 @@ Vector<Dim> viscous_monaghan_cleary(const Row<Dim>& row, int i, const std::array
             along += r * (u[d][i] - gather(u[d], row.index + k));
         }
         // A coincident pair has no direction, and along = 0.
-        const Lanes safe = squared > 0 ? squared : one;
+        const Lanes safe = select(squared > 0, squared, 1);
         const Lanes weight = 2 * (Dim + 2) * volume(row.index + k) * load(row.slope + k) * along / safe;
         for (int d = 0; d < Dim; ++d) {
             total[d] += weight * load(row.separation[d] + k);

@@ -128,19 +128,15 @@ double push(double r, double dx, double radius) {
 template <int Dim>
 Vector<Dim> repulsion(const Row<Dim>& row, const double* strength, double dx, double radius) {
     std::array<Lanes, Dim> total{};
-    const Lanes one = Lanes{} + 1.0;
     for (int k = 0; k < row.padded; k += lane_count) {
         const Lanes r2 = squared_separation<Dim>(row, k);
         const auto inside = (r2 > 0) & (r2 < radius * radius);
-        const Lanes safe = inside ? r2 : one;
-        Lanes r;
-        for (int l = 0; l < lane_count; ++l) {
-            r[l] = __builtin_sqrt(safe[l]);
-        }
+        const Lanes safe = select(inside, r2, 1);
+        const Lanes r = sqrt(safe);
         const Lanes cut = 1 - safe / (radius * radius);
         const Lanes power = Dim == 2 ? dx * dx / safe : dx * dx * dx / (safe * r);
         const Lanes pushed = gather(strength, row.index + k) * power * cut * cut / r;
-        const Lanes weight = inside ? pushed : Lanes{};
+        const Lanes weight = select(inside, pushed, 0);
         for (int d = 0; d < Dim; ++d) {
             total[d] += weight * load(row.separation[d] + k);
         }
