@@ -44,9 +44,13 @@ LadderRequest request_of(const verification::Case& flow, const Study& study) {
                           study.time_steps,
                           study.picture_at,
                           study.name,
-                          study.round_off};
+                          {},
+                          study.chaotic_round_off};
     for (const std::string& text : study.schemes) {
         request.schemes.push_back(verification::variant_of(text));
+    }
+    for (const std::string& text : study.chaotic) {
+        request.chaotic.push_back(verification::variant_of(text).label());
     }
     return request;
 }

@@ -64,8 +64,10 @@ struct Study {
     /// cause: what `compare` calls equal to round-off. The usual one is what is left of the pressure solve's
     /// tolerance, 1e-5, after one turnover of a vortex: particles at a stagnation point part as exp(2 pi U t
     /// / L).
-    double round_off = usual_round_off;
     static constexpr double usual_round_off = 0.01;
+    /// The schemes, or variants, whose runs forget their start, and that change of theirs.
+    std::vector<std::string> chaotic{};
+    double chaotic_round_off = usual_round_off;
 };
 
 /// What the rungs of a ladder differ in: the particle spacing, and all that is tied to it, or the time step

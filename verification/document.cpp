@@ -126,6 +126,8 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
     if (study.expectation && !study.expectation->waiver.empty()) {
         fit["waiver"] = study.expectation->waiver;
     }
+    const bool is_chaotic =
+        std::ranges::find(result.request.chaotic, study.scheme) != result.request.chaotic.end();
     Tree samples = Tree::array();
     for (const Sample& sample : study.samples) {
         samples.push_back(sample_tree(sample));
@@ -137,7 +139,7 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
             {"tier", result.request.tier},
             {"axis", study.axis == Axis::space ? "h" : "dt"},
             {"settings", settings},
-            {"round_off", result.request.round_off},
+            {"round_off", is_chaotic ? result.request.chaotic_round_off : Study::usual_round_off},
             {"expected", expected},
             {"fit", fit},
             {"samples", samples}};

@@ -17,10 +17,11 @@ struct LadderRequest {
     solver::Assignments settings;
     std::vector<int> ladder; ///< ascending
     std::string tier;        ///< "quick", "nightly", "full", or "command" for one given on the command line
-    std::vector<double> time_steps{}; ///< s; not empty: a ladder in time at the one n of `ladder`
-    int picture_at = 0;               ///< the rung whose runs keep their particles; 0 for none
-    std::string study{};              ///< name of the study, empty for a ladder given on the command line
-    double round_off = Study::usual_round_off; ///< of its error norms; see Study
+    std::vector<double> time_steps{};   ///< s; not empty: a ladder in time at the one n of `ladder`
+    int picture_at = 0;                 ///< the rung whose runs keep their particles; 0 for none
+    std::string study{};                ///< name of the study, empty for a ladder given on the command line
+    std::vector<std::string> chaotic{}; ///< labels of variants; see Study
+    double chaotic_round_off = Study::usual_round_off; ///< of their error norms
 };
 
 /// One rung of one scheme: the seeds' runs put together.

@@ -277,13 +277,22 @@ def verdict_finding(place, study):
     fit = study["fit"]
     kind = status(study)
     reason = fit["reason"] or "no reason given"
-    if kind == "waived":
-        return [Finding(3, kind, place, f"{fit['verdict']}, waived", [reason, "Waiver: " + fit["waiver"]], study["anchor"])]
     if kind in ("fail", "inconclusive"):
         return [Finding(0 if kind == "fail" else 2, kind, place, fit_line(study), [reason], study["anchor"])]
     if expects_early_end(study) and not early_ends(study):
         return [Finding(2, kind, place, "survived, though the study expects it to end early", [reason], study["anchor"])]
     return []
+
+
+def waived_findings(group):
+    """Verdicts that are waived; the fields of a scheme that are for one reason as one."""
+    together = {}
+    for study in group.studies:
+        if status(study) == "waived":
+            fit = study["fit"]
+            together.setdefault((study["scheme"], fit["verdict"], fit["reason"] or "no reason given", fit["waiver"]), []).append(study)
+    return [Finding(3, "waived", f"{group.label}, {scheme}, {', '.join(study['field'] for study in studies)}", f"{verdict}, waived",
+                    [reason, "Waiver: " + waiver], studies[0]["anchor"]) for (scheme, verdict, reason, waiver), studies in together.items()]
 
 
 def findings(groups):
@@ -292,7 +301,7 @@ def findings(groups):
     for group in groups:
         for scheme in group.schemes:
             found += early_end_finding(group, scheme)
-        found += conservation_findings(group) + goal_findings(group)
+        found += conservation_findings(group) + goal_findings(group) + waived_findings(group)
         for study in group.studies:
             found += verdict_finding(f"{group.label}, {study['scheme']}, {study['field']}", study)
     return found

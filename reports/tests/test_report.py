@@ -1035,6 +1035,14 @@ class Pieces(unittest.TestCase):
         self.assertIn("lost what it claims to conserve: momentum", found[0].title)
         self.assertEqual([finding.where for finding in findings.goal_findings(group)], ["taylor_green re=100, goal XU-TG 5"])
 
+    def test_fields_that_are_waived_for_one_reason_are_one_finding(self):
+        fit = {"verdict": "FAIL", "waiver": "sound grows", "reason": "0.3 < 1", "order": 0.3}
+        studies = [{"scheme": "wcsph", "field": name, "anchor": name, "expected": {"low": 1.0, "high": None, "fate": None}, "fit": dict(fit, reason=reason),
+                    "samples": [{"n": 40, "survived": True}] * 4} for name, reason in (("velocity", "0.3 < 1"), ("pressure", "0.3 < 1"), ("density", "0.4 < 1"))]
+        found = findings.waived_findings(findings.Group("g", "c", studies=studies))
+        self.assertEqual([finding.where for finding in found], ["g, wcsph, velocity, pressure", "g, wcsph, density"])
+        self.assertEqual(found[0].reasons, ["0.3 < 1", "Waiver: sound grows"])
+
     def test_an_early_end_that_is_waived_is_known(self):
         study = {"scheme": "wcsph", "field": "velocity", "anchor": "s", "expected": {"low": None, "high": None, "fate": None},
                  "fit": {"verdict": "FAIL", "waiver": "", "reason": ""}, "samples": [{"n": 40, "survived": False, "diagnosis": "pairs"}]}
