@@ -244,9 +244,12 @@ def settings_table(names, group, runs):
 
 
 def waivers_table(names, waived, more):
-    """The studies with a waiver, and `more` rows of the same kind."""
-    rows = [{"group": study["group"], "scheme": study["scheme"], "field": study["field"], "verdict": study["fit"]["verdict"],
-             "waiver": study["fit"]["waiver"]} for study in waived] + more
+    """The studies with a waiver, fields that share verdict and reason in one row, and `more` rows of the same kind."""
+    together = {}
+    for study in waived:
+        together.setdefault((study["group"], study["scheme"], study["fit"]["verdict"], study["fit"]["waiver"]), []).append(study["field"])
+    rows = [{"group": group, "scheme": scheme, "field": ", ".join(fields), "verdict": verdict, "waiver": waiver}
+            for (group, scheme, verdict, waiver), fields in together.items()] + more
     if not rows:
         return None
     columns = [Column("group", "what"), Column("scheme", "scheme"), Column("field", "field"), Column("verdict", "verdict"),
