@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -548,6 +549,9 @@ TEST(Cases, EveryStudyCanBePlanned) {
             }
             EXPECT_NO_THROW(plan(request)) << study.name;
             EXPECT_GT(study.cost, 0) << study.name;
+            for (const std::string& name : study.chaotic) { // or its width would be of no run
+                EXPECT_TRUE(std::ranges::count(study.schemes, name)) << study.name << ": " << name;
+            }
         }
     }
 }
