@@ -92,6 +92,16 @@ double number_of(const ResultTree& tree, const char* name) {
     return value.is_number() ? value.get<double>() : nan_value;
 }
 
+/// |after - before|/|before|; 0 for what is the same, infinite where either is no number.
+double relative_change(const ResultTree& before, const ResultTree& after) {
+    if (before == after) {
+        return 0;
+    }
+    return before.is_number() && after.is_number()
+               ? std::abs(after.get<double>() - before.get<double>()) / std::abs(before.get<double>())
+               : std::numeric_limits<double>::infinity();
+}
+
 /// The first member, and the others put together. Throws UserError for an entry without identity: two of them
 /// would be the same study. Only a tier may be missing (reports/FORMAT.md).
 std::pair<std::string, std::string> identity_of(const ResultTree& entry,
@@ -429,9 +439,7 @@ private:
             return;
         }
         const auto near = [](const ResultTree& x, const ResultTree& y) {
-            return x.is_number() && y.is_number() &&
-                   std::abs(y.get<double>() - x.get<double>()) <=
-                       round_off_of_operators * std::abs(x.get<double>());
+            return relative_change(x, y) <= round_off_of_operators;
         };
         const bool lists = old_demand.is_array() && demand.is_array() && old_demand.size() == demand.size();
         const bool close = lists ? std::ranges::equal(old_demand, demand, near) : near(old_demand, demand);
@@ -471,15 +479,12 @@ private:
             return;
         }
         std::size_t worst = 0;
-        double most = -1;
+        double most = 0;
         for (std::size_t k = 0; k < list.size(); ++k) {
-            const double x = old_list[k].is_number() ? old_list[k].get<double>() : nan_value;
-            const double y = list[k].is_number() ? list[k].get<double>() : nan_value;
-            const bool both_none = std::isnan(x) && std::isnan(y);
-            const double change = both_none || x == y ? 0 : std::abs(y - x) / std::abs(x);
-            if (std::isnan(change) || change > most) {
+            const double change = relative_change(old_list[k], list[k]);
+            if (change > most) {
                 worst = k;
-                most = std::isnan(change) ? std::numeric_limits<double>::infinity() : change;
+                most = change;
             }
         }
         note(most <= before.list->round_off ? Change::round_off : Change::error_level, before.subject,
