@@ -18,10 +18,11 @@ namespace sphvv::solver::storage {
 namespace {
 
 constexpr int deepest = 64;
-/// Processor time (s) of a trial, beside that for a share of the file: the slowest part, checksums, takes 1 s
-/// a GB.
-constexpr rlim_t least_seconds = 2;
-constexpr std::uintmax_t bytes_per_second = 20'000'000;
+/// Processor time (s) of a trial, beside that for a share of the file. A file of small groups and attributes
+/// is the slowest: 4 MB/s measured. Ten times that is left to slow machines, as only a reading that never
+/// ends must be found.
+constexpr rlim_t least_seconds = 10;
+constexpr std::uintmax_t bytes_per_second = 400'000;
 
 /// Whatever is refused in words will be refused again by who reads for good.
 template <class Act>
@@ -108,7 +109,9 @@ void read_in_trial(const std::filesystem::path& path) {
     }
     // Without a child (no memory for one) the file is read for good at once, as it would be after the trial.
     if (status != 0) {
-        throw UserError(path.string() + ": the file is damaged (the HDF5 library breaks down at it)");
+        const bool endless = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU;
+        throw UserError(path.string() + ": the file is damaged (the HDF5 library " +
+                        (endless ? "comes to no end with it)" : "breaks down at it)"));
     }
 }
 

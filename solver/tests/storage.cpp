@@ -1,6 +1,7 @@
 #include "sphvv/solver/error.hpp"
 #include "sphvv/solver/storage/hdf5.hpp"
 #include "sphvv/solver/storage/text.hpp"
+#include "sphvv/solver/storage/trial_reading.hpp"
 #include "sphvv/solver/storage/write_atomically.hpp"
 #include "sphvv/solver/tests/temporary_folder.hpp"
 
@@ -477,6 +478,20 @@ TEST_F(Storage, NoFlippedBitChangesANumberOrMixesUpTexts) {
         }
     }
     EXPECT_GT(refused, 100);
+}
+
+/// 9 MB of groups and attributes are what the operators of a nightly tier leave; reading all takes seconds.
+TEST_F(Storage, ATrialIsLongEnoughForAnyHealthyFile) {
+    write_hdf5(folder / "many.h5", [](const Group& root) {
+        for (int k = 0; k < 9000; ++k) {
+            const Group group = root.create_group("g" + std::to_string(k));
+            for (int j = 0; j < 24; ++j) {
+                group.set_attribute<std::string>("a" + std::to_string(j), "text");
+            }
+        }
+    });
+    EXPECT_GT(fs::file_size(folder / "many.h5"), 9'000'000U);
+    EXPECT_NO_THROW(read_in_trial(folder / "many.h5"));
 }
 
 TEST_F(Storage, EveryTruncatedFileIsRefused) {
