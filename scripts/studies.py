@@ -5,7 +5,7 @@ import subprocess
 
 
 class Study:
-    """One line of `sphvv list studies`. `cost` is its budget: seconds of run time on two cores."""
+    """One line of `sphvv list studies`. `cost` is its budget: seconds of processor time, of all threads."""
 
     def __init__(self, entry):
         self.name = entry["name"]

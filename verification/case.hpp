@@ -55,7 +55,7 @@ struct Study {
     std::vector<std::string> schemes; ///< or variants, as variant_of() reads them
     solver::Assignments settings;
     std::vector<int> ladder;
-    double cost; ///< s: the budget, run time on two cores
+    double cost; ///< s: the budget, processor time
     /// Not empty: a ladder in time, of these steps (s) at the one n of `ladder`.
     std::vector<double> time_steps{};
     /// Not 0: the rung at which the first run of every scheme keeps its particles for a picture (2-D).

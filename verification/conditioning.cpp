@@ -419,7 +419,7 @@ std::span<const ConditioningStudy> conditioning_studies() {
          .tier = Tier::quick,
          .summary = "condition numbers of the pressure equation and iterations, against N, disorder and the "
                     "share of the surface",
-         .cost = 20,
+         .cost = 5,
          .ladder = {16, 32, 64, 128},
          .disordered = {24, 32, 48, 72},
          .side = 20,
@@ -427,7 +427,7 @@ std::span<const ConditioningStudy> conditioning_studies() {
         {.name = "stability/conditioning_large",
          .tier = Tier::nightly,
          .summary = "the same up to 65536 particles",
-         .cost = 40,
+         .cost = 35,
          .ladder = {16, 32, 64, 128, 256},
          .disordered = {32, 48, 64, 96, 128},
          .side = 32,

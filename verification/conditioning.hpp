@@ -113,7 +113,7 @@ struct ConditioningStudy {
     std::string name;
     Tier tier;
     std::string summary;
-    double cost;                 ///< s: the budget, run time on two cores
+    double cost;                 ///< s: the budget, processor time
     std::vector<int> ladder;     ///< particles per side, of matrices against N
     std::vector<int> disordered; ///< the same, with 10 % jitter and five seeds
     int side;                    ///< of the sweep over disorder, and of closed boxes

@@ -27,9 +27,9 @@ std::span<const ExtremeRow> extreme_rows() {
 }
 
 std::span<const ExtremeStudy> extreme_studies() {
-    // Measured: 23 s and 164 s of one processor.
-    static const std::vector<ExtremeStudy> studies{{"stability/extreme", Tier::quick, 25},
-                                                   {"stability/extreme_long", Tier::nightly, 180}};
+    // A fifth more than the 24 s and 171 s measured.
+    static const std::vector<ExtremeStudy> studies{{"stability/extreme", Tier::quick, 30},
+                                                   {"stability/extreme_long", Tier::nightly, 210}};
     return studies;
 }
 

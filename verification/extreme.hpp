@@ -58,7 +58,7 @@ std::span<const ExtremeRow> extreme_rows();
 struct ExtremeStudy {
     std::string name;
     Tier tier;
-    double cost; ///< s: the budget, run time on two cores
+    double cost; ///< s: the budget, processor time
 };
 std::span<const ExtremeStudy> extreme_studies();
 

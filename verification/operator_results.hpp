@@ -25,12 +25,12 @@ struct OperatorResults {
     std::vector<ConsistencyRow> consistency_sums;
 };
 
-/// s: the budget of all operators in a tier, run time on two cores.
+/// s: the budget of all operators in a tier, processor time of all threads.
 struct OperatorTier {
     Tier tier;
     double cost;
 };
-inline constexpr std::array operator_tiers{OperatorTier{Tier::quick, 60}, OperatorTier{Tier::nightly, 600}};
+inline constexpr std::array operator_tiers{OperatorTier{Tier::quick, 160}, OperatorTier{Tier::nightly, 1500}};
 
 /// Studies, properties and costs of the operators; with `everything`, also the kernels and the published
 /// figures.

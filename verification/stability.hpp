@@ -60,7 +60,7 @@ struct StabilityStudy {
     Tier tier;
     std::string summary;
     std::string source;
-    double cost; ///< s: the budget, run time on two cores
+    double cost; ///< s: the budget, processor time
     Limit limit;
     std::vector<std::string> schemes; ///< variants, kernel and h/dx among their settings
     MapAxes map = MapAxes::none;      ///< growth over two parameters, in place of limits

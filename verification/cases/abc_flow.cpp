@@ -47,13 +47,13 @@ const Case& abc_flow() {
                  .schemes = {"wcsph", "isph_dfs", "isph_mls"},
                  .settings = {{"re", "100"}},
                  .ladder = {8, 11, 16, 23, 32},
-                 .cost = 35},
+                 .cost = 170},
                 {.name = "abc_flow/fine",
                  .tier = Tier::nightly,
                  .schemes = {"wcsph", "isph_dfs", "isph_mls"},
                  .settings = {{"re", "100"}},
                  .ladder = {12, 17, 24, 34, 48},
-                 .cost = 230},
+                 .cost = 700},
             },
     };
     return flow;

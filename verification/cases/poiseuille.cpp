@@ -107,19 +107,19 @@ std::vector<Study> studies() {
                    .schemes = both,
                    .settings = {{"re", "0.1"}, {"end_time", "0.2"}, {"columns", "10"}},
                    .ladder = {10, 14, 20, 28},
-                   .cost = 5});
+                   .cost = 8});
     all.push_back({.name = "poiseuille/implicit_fine",
                    .tier = Tier::nightly,
                    .schemes = both,
                    .settings = {{"re", "0.1"}, {"end_time", "0.3"}, {"columns", "10"}},
                    .ladder = {10, 20, 40, 80},
-                   .cost = 120});
+                   .cost = 170});
     all.push_back({.name = "poiseuille/implicit_re10",
                    .tier = Tier::full,
                    .schemes = both,
                    .settings = {{"re", "10"}, {"end_time", "20"}, {"columns", "10"}},
                    .ladder = {10, 20, 40, 80},
-                   .cost = 120});
+                   .cost = 240});
     return all;
 }
 
