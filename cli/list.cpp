@@ -58,12 +58,16 @@ Entries schemes() {
     return entries;
 }
 
+std::string tier_text(verification::Tier tier, double cost) {
+    return std::string(to_string(tier)) + " tier, " + verification::duration_text(cost) +
+           " of processor time: ";
+}
+
 Entries studies() {
     Entries entries = Entries::array();
     for (const auto& [tier, cost] : verification::operator_tiers) {
         entries.push_back({{"name", "operators"},
-                           {"summary", std::string(to_string(tier)) + " tier, " +
-                                           verification::duration_text(cost) + ": all operators and kernels"},
+                           {"summary", tier_text(tier, cost) + "all operators and kernels"},
                            {"source", "each operator's own"},
                            {"command", "operators"},
                            {"tier", to_string(tier)},
@@ -71,12 +75,11 @@ Entries studies() {
     }
     for (const verification::Case* flow : verification::cases::all()) {
         for (const verification::Study& study : flow->studies) {
-            std::string summary = std::string(to_string(study.tier)) + " tier, " +
-                                  verification::duration_text(study.cost) + ":";
+            std::string summary = tier_text(study.tier, study.cost);
             for (const std::string& scheme : study.schemes) {
-                summary += " " + scheme;
+                summary += scheme + " ";
             }
-            summary += " at n =";
+            summary += "at n =";
             for (const int n : study.ladder) {
                 summary += " " + std::to_string(n);
             }
@@ -90,8 +93,7 @@ Entries studies() {
     }
     const auto add = [&](const auto& study, const std::string& summary, const std::string& source) {
         entries.push_back({{"name", study.name},
-                           {"summary", std::string(to_string(study.tier)) + " tier, " +
-                                           verification::duration_text(study.cost) + ": " + summary},
+                           {"summary", tier_text(study.tier, study.cost) + summary},
                            {"source", source},
                            {"command", "stability"},
                            {"tier", to_string(study.tier)},
