@@ -32,6 +32,7 @@ set(CTEST_BUILD_CONFIGURATION Release)
 set(CTEST_CONFIGURATION_TYPE Nightly) # the tests that only a night runs
 cmake_host_system_information(RESULT CTEST_BUILD_NAME QUERY OS_NAME)
 find_program(CTEST_GIT_COMMAND git)
+set(CTEST_NIGHTLY_START_TIME "00:00:00 UTC") # nightly runs of one day belong together
 set(CTEST_UPDATE_VERSION_ONLY ON) # the revision is told, the tree stays as it is
 
 set(failed "")
