@@ -33,7 +33,9 @@ constexpr std::array work_names{"steps", "pair_evaluations", "solver_iterations"
                                 "undetermined"};
 /// What a check demands: loosening one of these turns a wrong answer into a right one.
 constexpr std::array demand_names{"bound",  "at_least",  "expected", "tolerance", "reference", "is_bound",
-                                  "theory", "theory_by", "low",      "high",      "fate"};
+                                  "theory", "theory_by", "low",      "high",      "fate",      "claims"};
+/// What the end of a run must be that cannot reach its end time.
+constexpr std::array fate_names{"spacing", "not_before"};
 
 /// Lists of checks, the members that identify one, the one that says whether it is as it must be, and what it
 /// measured: numbers, or lists of them.
@@ -67,6 +69,7 @@ const std::vector<CheckList>& check_lists() {
          {"usable"},
          round_off_of_schemes},
         {"claims", {"id", "group", "text"}, "agrees"},
+        {"conservation", {"scheme", "group"}, "kept", {}},
     };
     return lists;
 }
@@ -178,6 +181,38 @@ const ResultTree& entries_of(const ResultTree& tree, const char* list) {
     return entries;
 }
 
+/// Of every scheme of a group what it claims to conserve, and whether its runs that reached their end kept
+/// it: the list of a baseline, or made of the runs of a result.
+ResultTree conservation_of(const ResultTree& tree) {
+    if (!member(tree, "conservation").is_null()) {
+        return entries_of(tree, "conservation");
+    }
+    ResultTree list = ResultTree::array();
+    for (const ResultTree& run : entries_of(tree, "runs")) {
+        const ResultTree& budget = member(run, "budget");
+        if (!member(budget, "claims").is_string()) {
+            continue;
+        }
+        const auto same = [&](const ResultTree& entry) {
+            return member(entry, "scheme") == member(run, "scheme") &&
+                   member(entry, "group") == member(run, "group");
+        };
+        auto entry = std::ranges::find_if(list, same);
+        if (entry == list.end()) {
+            list.push_back({{"scheme", member(run, "scheme")},
+                            {"group", member(run, "group")},
+                            {"claims", member(budget, "claims")},
+                            {"kept", true}});
+            entry = std::prev(list.end());
+        }
+        const ResultTree& lost = member(budget, "lost");
+        if (member(run, "survived") == true && lost.is_string() && !lost.get<std::string>().empty()) {
+            (*entry)["kept"] = false;
+        }
+    }
+    return list;
+}
+
 /// A name that no other entry has: a study that stands twice in a file is compared twice, not passed over.
 template <class Map>
 std::string free_key(const Map& map, std::string key) {
@@ -225,12 +260,14 @@ void collect_studies(const ResultTree& tree, const char* list, const std::vector
     }
 }
 
-Contents contents_of(const ResultTree& tree) {
+/// Points into `tree`, and into `conservation` that was made of it.
+Contents contents_of(const ResultTree& tree, const ResultTree& conservation) {
     Contents contents;
     collect_studies(tree, "operator_studies", operator_identity, contents);
     collect_studies(tree, "studies", scheme_identity, contents);
     for (const CheckList& list : check_lists()) {
-        for (const ResultTree& check : entries_of(tree, list.name)) {
+        const bool of_runs = std::string_view(list.name) == "conservation";
+        for (const ResultTree& check : of_runs ? conservation : entries_of(tree, list.name)) {
             if (!is_check(list, check)) {
                 continue;
             }
@@ -368,6 +405,10 @@ private:
         compare_word(Change::demand, before.subject, before.where, "expected fate",
                      text_of(member(member(*before.tree, "expected"), "fate")),
                      text_of(member(member(*after.tree, "expected"), "fate")));
+        for (const char* name : fate_names) {
+            compare_demand(before.subject, before.where, "studies", member(*before.tree, "expected"),
+                           member(*after.tree, "expected"), name);
+        }
         compare_round_off(before, *before.tree, *after.tree);
         compare_word(Change::verdict, before.subject, before.where, "verdict", verdict_of(*before.tree),
                      verdict_of(*after.tree));
@@ -427,12 +468,13 @@ private:
 
     /// A demand that is gone is weaker than any. One that the baseline does not keep yet is reported under
     /// its list, one row for all, and fails nothing. Some are computed, so they are equal to round-off only.
-    void compare_demand(const Contents::Check& before, const Contents::Check& after, const char* name) {
-        const ResultTree& old_demand = member(*before.tree, name);
-        const ResultTree& demand = member(*after.tree, name);
+    void compare_demand(const std::string& subject, const std::string& where, const char* list,
+                        const ResultTree& before, const ResultTree& after, const char* name) {
+        const ResultTree& old_demand = member(before, name);
+        const ResultTree& demand = member(after, name);
         if (old_demand.is_null() && !demand.is_null()) {
-            const std::string where = before.subject + (before.where.empty() ? "" : ", ") + before.where;
-            note(Change::added, before.list->name, where, name, none, text_of(demand));
+            note(Change::added, list, subject + (where.empty() ? "" : ", ") + where, name, none,
+                 text_of(demand));
             return;
         }
         if (settled(demand.is_null() && old_demand.is_null(), demand == old_demand)) {
@@ -443,10 +485,10 @@ private:
         };
         const bool lists = old_demand.is_array() && demand.is_array() && old_demand.size() == demand.size();
         const bool close = lists ? std::ranges::equal(old_demand, demand, near) : near(old_demand, demand);
-        const double x = number_of(*before.tree, name);
-        const double y = number_of(*after.tree, name);
-        note(close ? Change::round_off : Change::demand, before.subject, before.where, name,
-             text_of(old_demand), text_of(demand), old_demand.is_number() ? y / x : 1);
+        const double x = number_of(before, name);
+        const double y = number_of(after, name);
+        note(close ? Change::round_off : Change::demand, subject, where, name, text_of(old_demand),
+             text_of(demand), old_demand.is_number() ? y / x : 1);
     }
 
     void compare_check(const Contents::Check& before, const Contents::Check& after) {
@@ -454,7 +496,7 @@ private:
                      outcome_of(*before.tree, before.list->passes),
                      outcome_of(*after.tree, before.list->passes));
         for (const char* name : demand_names) {
-            compare_demand(before, after, name);
+            compare_demand(before.subject, before.where, before.list->name, *before.tree, *after.tree, name);
         }
         for (const char* name : before.list->values) {
             if (member(*before.tree, name).is_array()) {
@@ -556,7 +598,7 @@ ResultTree picked(const ResultTree& tree, const std::vector<const char*>& names)
 
 ResultTree reduced_study(const ResultTree& study, const std::vector<const char*>& identity) {
     ResultTree result = picked(study, identity);
-    result["expected"] = picked(member(study, "expected"), {"low", "high", "fate"});
+    result["expected"] = picked(member(study, "expected"), {"low", "high", "fate", "spacing", "not_before"});
     if (member(study, "axis") == "dt") {
         result["axis"] = "dt";
     }
@@ -592,16 +634,6 @@ void keep_work_once(const ResultTree& entries, ResultTree& study) {
         for (const char* name : work_names) {
             sample.erase(name);
         }
-    }
-}
-
-/// A run that lost what its scheme claims to conserve.
-void refuse_unless_kept(const ResultTree& run) {
-    const ResultTree& lost = member(member(run, "budget"), "lost");
-    if (member(run, "survived") == true && lost.is_string() && !lost.get<std::string>().empty()) {
-        throw UserError(
-            "no baseline is made of a result that does not pass: " + text_of(member(run, "scheme")) + " (" +
-            text_of(member(run, "group")) + ") lost " + lost.get<std::string>());
     }
 }
 
@@ -660,7 +692,9 @@ ResultTree read_comparable(const std::filesystem::path& path) {
 }
 
 Comparison compare(const ResultTree& baseline, const ResultTree& current) {
-    return Comparer().run(contents_of(baseline), contents_of(current));
+    const ResultTree before = conservation_of(baseline);
+    const ResultTree after = conservation_of(current);
+    return Comparer().run(contents_of(baseline, before), contents_of(current, after));
 }
 
 std::string markdown(const Comparison& comparison, std::size_t most_lines) {
@@ -783,16 +817,15 @@ ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty) {
             baseline[list].push_back(std::move(reduced));
         }
     }
-    for (const ResultTree& run : member(result, "runs")) {
-        refuse_unless_kept(run);
-    }
+    const ResultTree conservation = conservation_of(result);
     for (const CheckList& list : check_lists()) {
         baseline[list.name] = ResultTree::array();
         std::vector<const char*> kept = list.identity;
         kept.insert(kept.end(), demand_names.begin(), demand_names.end());
         kept.insert(kept.end(), list.values.begin(), list.values.end());
         kept.insert(kept.end(), {"waiver", "binding", list.passes});
-        for (const ResultTree& check : entries_of(result, list.name)) {
+        const bool of_runs = std::string_view(list.name) == "conservation";
+        for (const ResultTree& check : of_runs ? conservation : entries_of(result, list.name)) {
             if (!is_check(list, check)) {
                 continue;
             }

@@ -113,6 +113,8 @@ Tree study_tree(const LadderResult& result, const FieldStudy& study) {
                     {"source", e->order.source}};
         if (e->ends_early) {
             expected["fate"] = "ends_early";
+            expected["spacing"] = e->ends_early->spacing;
+            expected["not_before"] = e->ends_early->not_before;
         }
     }
     Tree fit{{"norm", "l2"},

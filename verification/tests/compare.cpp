@@ -337,6 +337,42 @@ TEST(Compare, ARunThatEndsEarlyIsHeldToItsFateAndNotToItsSteps) {
     ResultTree undemanded = before;
     undemanded["studies"][0]["expected"].erase("fate");
     EXPECT_EQ(count(compare(baseline, undemanded), Change::demand), 1);
+    // When and how it may end is the whole demand; a baseline that is older than its bounds says nothing.
+    for (const char* name : {"spacing", "not_before"}) {
+        ResultTree bounded = before;
+        bounded["studies"][0]["expected"][name] = 0.1;
+        const ResultTree kept = ResultTree::parse(baseline_text(reduced_for_baseline(bounded)));
+        EXPECT_TRUE(compare(kept, bounded).differences.empty());
+        bounded["studies"][0]["expected"][name] = 0.2;
+        EXPECT_EQ(count(compare(kept, bounded), Change::demand), 1) << name;
+        EXPECT_EQ(count(compare(kept, before), Change::demand), 1) << name;
+        EXPECT_EQ(count(compare(baseline, bounded), Change::added), 1) << name;
+        EXPECT_FALSE(compare(baseline, bounded).fails());
+    }
+}
+
+ResultTree with_runs(const char* claims, const char* lost) {
+    ResultTree tree = result();
+    for (const bool survived : {true, false}) {
+        tree["runs"].push_back({{"scheme", "isph_lee"},
+                                {"group", "g"},
+                                {"survived", survived},
+                                {"budget", {{"claims", claims}, {"lost", survived ? lost : "energy"}}}});
+    }
+    return tree;
+}
+
+TEST(Compare, AClaimToConserveThatIsGivenUpIsALoosenedDemand) {
+    const ResultTree before = with_runs("momentum, energy", "");
+    const ResultTree baseline = ResultTree::parse(baseline_text(reduced_for_baseline(before)));
+    EXPECT_EQ(baseline["conservation"].size(), 1U);
+    EXPECT_TRUE(compare(baseline, before).differences.empty());
+    const Comparison given_up = compare(baseline, with_runs("momentum", ""));
+    EXPECT_EQ(count(given_up, Change::demand), 1);
+    EXPECT_TRUE(given_up.fails());
+    EXPECT_EQ(count(compare(baseline, with_runs("momentum, energy", "energy")), Change::verdict), 1);
+    EXPECT_EQ(count(compare(baseline, result()), Change::missing), 1);
+    EXPECT_FALSE(compare(result(), before).fails()) << "an older baseline";
 }
 
 TEST(Compare, ASolveMayEndOneIterationEarlierOrLater) {
@@ -664,12 +700,8 @@ TEST(Bless, RefusesWhatDoesNotPassAndNamesIt) {
 }
 
 TEST(Bless, RefusesARunThatLostWhatItClaims) {
-    ResultTree tree = result();
-    tree["runs"] = ResultTree::array(
-        {{{"scheme", "isph_lee"}, {"group", "g"}, {"survived", true}, {"budget", {{"lost", ""}}}}});
-    EXPECT_NO_THROW(reduced_for_baseline(tree));
-    tree["runs"][0]["budget"]["lost"] = "momentum";
-    EXPECT_THROW(reduced_for_baseline(tree), UserError);
+    EXPECT_NO_THROW(reduced_for_baseline(with_runs("momentum", "")));
+    EXPECT_THROW(reduced_for_baseline(with_runs("momentum", "momentum")), UserError);
 }
 
 TEST(Bless, KeepsWhetherTheTreeWasClean) {
