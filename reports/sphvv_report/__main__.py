@@ -37,7 +37,8 @@ def parse_arguments(arguments):
 def refuse_unwritable(path, out):
     """Before anything is written, the folder of the page among it: a summary that cannot be written must not cost a page."""
     folder = os.path.dirname(path) or "."
-    if path != "-" and os.path.abspath(folder) != os.path.abspath(out) and (os.path.isdir(path) or not os.access(path if os.path.exists(path) else folder, os.W_OK)):
+    is_made = os.path.abspath(folder) in (os.path.abspath(out), os.path.abspath(os.path.join(out, "tables")))  # by the report, if need be
+    if path != "-" and (os.path.isdir(path) or not (is_made or os.access(path if os.path.exists(path) else folder, os.W_OK))):
         raise ResultError(f"--json {path} cannot be written: {'it is a folder' if os.path.isdir(path) else 'no such folder, or no right to write there'}")
 
 

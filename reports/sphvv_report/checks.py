@@ -19,6 +19,7 @@ class Kind:
     failure: Callable
     flag: str = "passes"
     reason: Callable = lambda check: check["why"]
+    refuses_needless: bool = False  # whether a waiver of what passes is a failure, as FORMAT.md has it
 
 
 def dimension_label(check):
@@ -45,7 +46,7 @@ KINDS = [
          lambda check: f"{check['check']} was not refused"),
     Kind("published_figures", "published figures agree", lambda figure: f"published figure {figure['id']}",
          lambda figure: f"published {figure['published']}, ours {figure['ours']}"
-         + (" agrees, although it is known not to" if figure["agrees"] else ""), "agrees", lambda figure: figure["text"]),
+         + (" agrees, although it is known not to" if figure["agrees"] else ""), "agrees", lambda figure: figure["text"], refuses_needless=True),
     Kind("stability_limits", "limits of the time step agree with linear theory", lambda limit: f"{limit['limit']} limit of {limit['scheme']}",
          lambda limit: f"stable to {measured(limit['measured'])} of the published bound, {measured(limit['theory'])} in theory",
          reason=lambda limit: limit["reason"]),
@@ -68,15 +69,17 @@ def is_waived(kind, check):
 
 
 def is_as_it_must_be(kind, check):
-    return is_waived(kind, check) or (bool(check[kind.flag]) and not check.get("waiver"))
+    return is_waived(kind, check) or (bool(check[kind.flag]) and not (kind.refuses_needless and check.get("waiver")))
 
 
 def waived_findings(kind, checks):
-    """The waived ones of a kind as one finding; none where there are none."""
+    """The waived ones of a kind as one finding, and each whose waiver nothing needs; none where there are none."""
+    needless = [Finding(3, "waived", kind.where(check), "passes, although waived", [kind.reason(check), "Waiver: " + check["waiver"]], kind.member)
+                for check in checks if check.get("waiver") and check[kind.flag] and not kind.refuses_needless]
     waived = [check for check in checks if is_waived(kind, check)]
     reasons = [f"{kind.where(check).removeprefix('published figure ')}: {kind.failure(check)}" for check in waived]
-    return [Finding(3, "waived", kind.member.replace("_", " "), f"{len(waived)} of {len(checks)} are not as they should be", reasons, "waivers")] \
-        if waived else []
+    return needless + ([Finding(3, "waived", kind.member.replace("_", " "), f"{len(waived)} of {len(checks)} are not as they should be", reasons, "waivers")]
+                       if waived else [])
 
 
 def findings(results):

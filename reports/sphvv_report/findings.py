@@ -19,14 +19,16 @@ STATUSES = {
 }
 
 GLOSSARY = [
-    ("PASS", "The fitted order and the order of the finest pair both lie inside the expected band."),
-    ("FAIL", "The whole 95 % confidence interval of the fitted order lies outside the expected band."),
-    ("INCONCLUSIVE", "The ladder cannot decide: the interval straddles an edge of the band, or the residuals show a floor, "
-                     "round-off or noise, which the reason names."),
+    ("PASS", "The fitted order and the order of the finest pair both lie inside the expected band; or every run ended early, as the study expects."),
+    ("FAIL", "The whole 95 % confidence interval of the fitted order lies outside the expected band; or a run ended early that should not, "
+             "or did not end early as the study expects."),
+    ("INCONCLUSIVE", "The ladder cannot decide: the interval straddles an edge of the band, the finest pair lies outside it though the fit lies inside, "
+                     "the rungs are too few or too close, or there is a floor, round-off, a drift of the order or noise, which the reason names."),
     ("WAIVED", "A FAIL or INCONCLUSIVE that the study accepts, with the reason it states. Always listed."),
     ("ENDED EARLY", "A run met its survival criterion before the end time (a field not finite, a particle outside the domain, "
                     "kinetic energy above its bound, or particles too close together). † marks an end that the study expects."),
-    ("no verdict", f"No order was demanded, or the ladder has fewer than {FEWEST_RUNGS} rungs: errors are shown, orders are not judged."),
+    ("no verdict", f"No order was demanded, the ladder has fewer than {FEWEST_RUNGS} rungs, or an error is zero to the last bit: errors are shown, "
+                   "orders are not judged."),
 ]
 
 NORMS = [
@@ -279,7 +281,7 @@ def verdict_finding(place, study):
     reason = fit["reason"] or "no reason given"
     if kind in ("fail", "inconclusive"):
         return [Finding(0 if kind == "fail" else 2, kind, place, fit_line(study), [reason], study["anchor"])]
-    if expects_early_end(study) and not early_ends(study):
+    if kind != "waived" and expects_early_end(study) and not early_ends(study):
         return [Finding(2, kind, place, "survived, though the study expects it to end early", [reason], study["anchor"])]
     return []
 
@@ -321,12 +323,13 @@ def counts(studies):
 
 
 def verdict_counts(studies):
-    """The number of order verdicts in words, and how many of each."""
+    """The number of verdicts in words, and how many of each; order verdicts where each is one, as that on an early end is not."""
     tally = counts(studies)
-    judged = sum(tally[key] for key in ("pass", "fail", "inconclusive", "waived"))
+    judged = [study for study in studies if study["fit"]["verdict"] != "NONE"]
+    article, noun = ("an", "order verdict") if all(study["fit"]["order"] is not None for study in judged) else ("a", "verdict")
     words = [f"{tally[key]} {STATUSES[key][0]}" for key in ("pass", "fail", "inconclusive", "waived") if tally[key]]
-    text = f"{plural(judged, 'order verdict')}" + (f" ({', '.join(words)})" if words else "")
-    return text + (f", {tally['none']} without an order verdict" if tally["none"] else "")
+    text = f"{plural(len(judged), noun)}" + (f" ({', '.join(words)})" if words else "")
+    return text + (f", {tally['none']} without {article} {noun}" if tally["none"] else "")
 
 
 def summary(groups, found):

@@ -105,7 +105,7 @@ def caption(group, n, runs, error_clipped, excess_clipped):
     if excess_clipped:
         text += " Speeds outside the range of the runs that reached their end are cut off."
     absent = [scheme for scheme in group.schemes if scheme not in {run["scheme"] for run in runs}]
-    return text + (f" Without a history: {', '.join(absent)}." if absent else "")
+    return text + (f" Not drawn: {', '.join(absent)}." if absent else "")
 
 
 def table(names, group):

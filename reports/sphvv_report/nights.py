@@ -1,10 +1,12 @@
 """The history of nightly runs: what every night found, which verdicts changed from one to the next, and trends of error, order, work and time.
 
 The file has one JSON object a line (scripts/nightly): date, tier, revision, seconds, and `rows`, one a ladder: group, scheme, field, order, ci95,
-verdict, waived, ended (runs that ended early), n, and of the finest rung l2, pair_evaluations, matrix_entries, seconds; or one a check, with
-`failing`, what is not as it must be. `complete`: all studies of the tier were run; `started` and `program` tell which night it is.
+verdict, waived, ended (runs that ended early), n, and of the finest rung l2, pair_evaluations, matrix_entries, seconds, and `survived`, false where
+it ended early; or one a check, with `failing`, what is not as it must be. `complete`: all studies of the tier were run; `started` and `program`
+tell which night it is.
 """
 
+import itertools
 import json
 import math
 from collections import Counter
@@ -17,6 +19,7 @@ from .results import ResultError, is_number, plain
 from .tables import Column, Table
 
 MOVED = 0.01  # a change of error or work by more than this share is one
+ORDER_MOVED = 0.05  # a change of an order by more than this, and than both confidence intervals, is one, as in scripts/nightly
 MOST_NIGHTS = 60  # that a picture shows
 PANELS = [("l2", "error of the finest rung", True), ("order", "fitted order", False), ("work", "work (pairs + matrix entries)", True),
           ("seconds", "run time [s]", True)]
@@ -30,9 +33,11 @@ def complain(night):
     if not isinstance(rows, list) or not all(isinstance(row, dict) and all(isinstance(row.get(name), str) for name in ("group", "scheme", "field", "verdict"))
                                              for row in rows):
         return "its rows do not say group, scheme, field and verdict"
-    wrong = next((name for row in rows for name in ("order", "ci95", "l2", "pair_evaluations", "matrix_entries", "seconds")
+    wrong = next((name for row in [night, *rows] for name in ("order", "ci95", "n", "l2", "pair_evaluations", "matrix_entries", "seconds")
                   if row.get(name) is not None and not is_number(row[name])), None)
-    return f"{wrong} is not a number" if wrong else ""
+    if wrong:
+        return f"{wrong} is not a number"
+    return "" if isinstance(night.get("program", ""), str) else "program is not a text"
 
 
 def lines_of(path):
@@ -85,14 +90,24 @@ def work_of(row):
     return sum(parts) if parts else None
 
 
+def with_work(row):
+    """The row with its work. What a finest rung that ended early cost is no point of a trend; an error it has not."""
+    return {**row, "work": work_of(row)} if row.get("survived", True) else {**row, "l2": None, "work": None, "seconds": None}
+
+
 def word(row):
     return f"{row['verdict']}, waived" if row.get("waived") else row["verdict"]
 
 
 def ladders(nights):
-    """key -> one row a night, None where the night has not that ladder."""
-    by_night = [{key_of(row): {**row, "work": work_of(row)} for row in night["rows"]} for night in nights]
-    return {key: [rows.get(key) for rows in by_night] for key in findings.unique(key for rows in by_night for key in rows)}
+    """key -> one row a night, None where the night has not that ladder; `changed` where its verdict is not that of the last night that had it."""
+    by_night = [{key_of(row): with_work(row) for row in night["rows"]} for night in nights]
+    courses = {key: [rows.get(key) for rows in by_night] for key in findings.unique(key for rows in by_night for key in rows)}
+    for course in courses.values():
+        known = [row for row in course if row is not None]
+        for before, row in zip(known, known[1:]):
+            row["changed"] = word(before) != word(row)
+    return courses
 
 
 def verdict_changes(courses, nights):
@@ -117,12 +132,17 @@ def is_ladder(course):
 
 
 def has_moved(course):
-    """Whether error or work of the last night differs from any earlier one."""
+    """Whether error, work or order of any night differs from that of another one."""
+    rows = [row for row in course if row is not None]
     for name in ("l2", "work"):
-        values = [row[name] for row in course if row is not None and row.get(name)]
+        values = [row[name] for row in rows if row.get(name)]
         if values and max(values) > (1 + MOVED) * min(values):
             return True
-    return False
+    orders = sorted((row["order"], row.get("ci95") or 0.0) for row in rows if row.get("order") is not None)
+    if not orders:
+        return False
+    (lowest, below), (highest, above) = orders[0], orders[-1]
+    return len(orders) < len(rows) or highest - lowest > max(ORDER_MOVED, below + above)
 
 
 def revision_label(night):
@@ -173,8 +193,9 @@ def trend(name, group, field, nights, courses):
         figures.add_legend(canvas, handles)
         drawing = figures.finish(canvas, name, f"Nights of {group}, {field}", f"{len(shown)} nights, {len(curves)} schemes.",
                                  f"sphvv, revisions {shown[0]['revision'][:12]} to {shown[-1]['revision'][:12]}")
-    return figures.Picture(name, f"{figures.sentence(field)}, night by night (revision and day below): "
-                                 + ", ".join(title for _, title, _ in panels) + ". Rings mark nights whose verdict is not that of the night before.", drawing)
+    timed = " Run times are not joined: they differ between machines and loads, too." if any(key == "seconds" for key, _, _ in panels) else ""
+    return figures.Picture(name, f"{figures.sentence(field)}, night by night (revision and day below): " + ", ".join(title for _, title, _ in panels)
+                           + f". Rings mark nights whose verdict is not that of the last night that had one.{timed}", drawing)
 
 
 def drawable(row, panel):
@@ -188,15 +209,21 @@ def draw_panel(axes, panel, curves, scheme_looks):
     for scheme, course in curves.items():
         points = [(index, drawable(row, panel)) for index, row in enumerate(course) if drawable(row, panel) is not None]
         look = scheme_looks[scheme]
-        axes.plot([index for index, _ in points], [value for _, value in points], color=look.colour, linestyle=look.line, marker=look.marker,
-                  markersize=4, markeredgecolor="white", markeredgewidth=0.4, zorder=3)
-        ringed = [(index, value) for index, value in points if index and course[index - 1] is not None and word(course[index - 1]) != word(course[index])]
+        for line in unbroken(points, course):
+            axes.plot(*zip(*line), color=look.colour, linestyle="none" if panel[0] == "seconds" else look.line, marker=look.marker,
+                      markersize=4, markeredgecolor="white", markeredgewidth=0.4, zorder=3)
+        ringed = [(index, value) for index, value in points if course[index].get("changed")]
         axes.plot([index for index, _ in ringed], [value for _, value in ringed], linestyle="none", marker="o", markersize=9,
                   markerfacecolor="none", markeredgecolor="#a83c00", markeredgewidth=1.3, zorder=4)
     if panel[2] and values:
         axes.set_yscale("log")
         axes.set_ylim(figures.set_log_axis(axes.yaxis, min(values), max(values)))
     figures.label_above(axes, panel[1])
+
+
+def unbroken(points, course):
+    """The points in lines of one finest rung each: where the ladder ends elsewhere, its error is another one."""
+    return [list(line) for _, line in itertools.groupby(points, lambda point: course[point[0]].get("n"))]
 
 
 def label_nights(axes, nights, is_lowest):

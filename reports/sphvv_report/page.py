@@ -99,9 +99,15 @@ def parameters_table(names, group, case):
                  rows, style="prose", context=group.label)
 
 
-def run_at(group, scheme, n):
-    runs = [run for run in group.runs if run["scheme"] == scheme and run["n"] == n]
-    return next((run for run in runs if run["survived"]), runs[0] if runs else {})
+def worst_of_seeds(runs):
+    """What only the runs themselves tell of a rung: that of the worst seed, which a mean would hide."""
+    known = lambda name: [run[name] for run in runs if run[name] is not None]
+    return {"minimum_spacing": min(known("minimum_spacing"), default=None),
+            **{name: max(known(name), key=abs, default=None) for name in ("energy_error", "maximum_speed_error")}}
+
+
+def machine(result):
+    return result["provenance"]["cpu"], result["provenance"]["threads"]
 
 
 def sample_at(study, n):
@@ -122,24 +128,31 @@ def comparison_table(names, group):
     n = group.common_rung()
     if n is None:
         return None
-    rows, spans = [], {}
+    comparable = len(set(map(machine, group.results()))) == 1
+    rows, notes, ended = [], [], {}
     for scheme in group.schemes:
-        samples = {study["field"]: sample_at(study, n) for study in group.of_scheme(scheme)}
+        samples = {}
+        for study in group.of_scheme(scheme):  # of several tiers the first that has the rung
+            samples[study["field"]] = samples.get(study["field"]) or sample_at(study, n)
         sample = next(filter(None, samples.values()))
-        run = run_at(group, scheme, n)
+        runs = [run for run in group.runs if run["scheme"] == scheme and run["n"] == n]
         iterations = sample["solver_iterations"]
         row = {"scheme": scheme, "seconds": sample["seconds"], "pair_evaluations": sample["pair_evaluations"],
                "solver_iterations": iterations, "iterations_per_step": per_step(iterations, sample) or None,
-               "throughput": throughput(sample), "bytes_per_particle": run.get("bytes_per_particle"),
-               "energy_error": run.get("energy_error"), "maximum_speed_error": run.get("maximum_speed_error"),
-               "minimum_spacing": run.get("minimum_spacing"),
+               "throughput": throughput(sample) if comparable else None, "bytes_per_particle": runs[0]["bytes_per_particle"] if runs else None,
                "survived": sample["survived"]}
+        if sample["survived"]:
+            row.update(worst_of_seeds(runs))
+        else:
+            ended[len(rows)] = "ended early: " + (sample["diagnosis"] or "no diagnosis given")
         for field, entry in samples.items():
             row["l2_" + field] = entry["l2"] if entry else None
-        if not sample["survived"]:
-            spans[len(rows)] = Span("l2_" + group.fields[0], "slowdown", "ended early: " + (sample["diagnosis"] or "no diagnosis given"))
+        if sample["survived"] and (sample["seeds"] or 1) > 1 and not notes:
+            notes.append("Errors and costs are means over the seeds; energy error, max speed error and closest pair are those of the worst seed.")
         rows.append(row)
-    times = [row["seconds"] for row in rows if row["seconds"] and row["survived"]]
+    times = [row["seconds"] for row in rows if row["seconds"] and row["survived"]] if comparable else []
+    if not comparable:
+        notes.append("The times are of different processors or numbers of threads, so that they have no ratio.")
     for row in rows:
         row["slowdown"] = row["seconds"] / min(times) if times and row["seconds"] and row["survived"] else None
     columns = [Column("scheme", "scheme")]
@@ -150,14 +163,14 @@ def comparison_table(names, group):
                 Column("solver_iterations", "solver iterations", "integer", shown=False),
                 Column("bytes_per_particle", "bytes per particle", "integer"),
                 Column("energy_error", "energy error", "scientific"), Column("maximum_speed_error", "max speed error", "scientific"),
-                  Column("minimum_spacing", "closest pair", "significant", "dx"),
+                Column("minimum_spacing", "closest pair", "significant", "dx"),
                 Column("survived", "survived", "flag", shown=False)]
     columns = [column for column in columns if not column.shown or column.key in ("scheme", "seconds")
                or any(row.get(column.key) is not None for row in rows)]
-    shown = {column.key for column in columns if column.shown}
-    spans = {index: Span(span.first, span.last, span.text) for index, span in spans.items() if {span.first, span.last} <= shown}
+    last = "slowdown" if any(column.key == "slowdown" for column in columns) else "seconds"
+    spans = {index: Span(columns[1].key, last, text) for index, text in ended.items()}
     return Table(names.unique(group.label, "schemes"), f"the schemes side by side at n = {numbers.integer(n)}",
-                 columns, rows, spans=spans, context=group.label)
+                 columns, rows, notes, spans, context=group.label)
 
 
 def claims_table(names, group):
@@ -221,12 +234,12 @@ def fields_table(names, group, scheme, run):
 
 
 def flat(settings, prefix=""):
-    """Settings as name -> printed value; an object within becomes dotted names."""
+    """Settings as name -> value; an object within becomes dotted names, a list one text."""
     for key, value in sorted(settings.items()):
         if isinstance(value, dict):
             yield from flat(value, f"{prefix}{key}.")
         else:
-            yield prefix + key, numbers.general(value)
+            yield prefix + key, numbers.general(value) if isinstance(value, list) else value
 
 
 def settings_table(names, group, runs):
@@ -239,7 +252,7 @@ def settings_table(names, group, runs):
     keys.sort(key=lambda key: (len({settings.get(key) for settings in columns.values()}) == 1, key))
     rows = [{"name": key, **{"scheme:" + scheme: settings.get(key) for scheme, settings in columns.items()}} for key in keys]
     return Table(names.unique(group.label, "settings"), "resolved settings, those that differ first",
-                 [Column("name", "setting")] + [Column("scheme:" + scheme, scheme) for scheme in columns], rows, style="prose",
+                 [Column("name", "setting")] + [Column("scheme:" + scheme, scheme, "general") for scheme in columns], rows, style="prose",
                  context=group.label)
 
 
@@ -317,7 +330,8 @@ class Builder:
 
     def group_view(self, group):
         """One chapter of the page."""
-        case = self.results["cases"].get(group.case)
+        cases = self.results["cases"]
+        case = cases.get((group.case, group.label)) or cases.get((group.case, ""))  # older files do not say whose it is
         detailed = {scheme: self.detailed_run(group, scheme) for scheme in group.schemes}
         detailed = {scheme: run for scheme, run in detailed.items() if run}
         stamp = stamp_of(group.results())
@@ -325,6 +339,7 @@ class Builder:
         dimension = case["dimension"] if case else None
         return {
             "label": group.label, "anchor": group.anchor, "case": case, "group": group,
+            "all_ended": all(len(findings.early_ends(study)) == len(study["samples"]) for study in group.studies),
             "parameters": self.keep(parameters_table(self.table_names, group, case)),
             "comparison": None if in_time else self.keep(comparison_table(self.table_names, group)),
             "convergence": [picture for field in group.fields if (picture := self.draw(

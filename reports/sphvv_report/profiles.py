@@ -13,10 +13,10 @@ TITLES = {"velocity_x": "velocity u [m/s]", "pressure": "pressure p [Pa]", "dens
 
 
 def runs_with_profiles(group):
-    """The first run of every scheme that kept some, the finest of them."""
+    """The first run of every scheme that kept some, the finest of them; a run without a study has no look."""
     best = {}
     for run in group.runs:
-        if run["profiles"] and (run["scheme"] not in best or run["n"] > best[run["scheme"]]["n"]):
+        if run["profiles"] and run["scheme"] in group.schemes and (run["scheme"] not in best or run["n"] > best[run["scheme"]]["n"]):
             best[run["scheme"]] = run
     return list(best.values())
 
@@ -32,10 +32,12 @@ def thinned(profile):
     return pairs[::step]
 
 
-def exact_curve(profiles):
-    """The exact values at all particles of all runs, in the order of the coordinate."""
-    return sorted({(y, value) for profile in profiles for y, value in zip(profile["coordinate"], profile["exact"])
-                   if y is not None and value is not None})
+def exact_curves(shown):
+    """The exact values in the order of the coordinate: one curve through the particles of all runs that reached their end; where none did,
+    one of each run, as they are of different times."""
+    reached = [profile for run, profile in shown if run["survived"]]
+    return [sorted({(y, value) for profile in of_curve for y, value in zip(profile["coordinate"], profile["exact"]) if y is not None and value is not None})
+            for of_curve in ([reached] if reached else [[profile] for _, profile in shown])]
 
 
 def fields(runs):
@@ -49,8 +51,8 @@ def picture(name, group, field, runs, scheme_looks, stamp):
     with matplotlib.rc_context({**figures.STYLE, "svg.hashsalt": name}):
         canvas, [axes] = figures.new_canvas(figures.heading(group.label, field), 1,
                                             figures.line_count(labels) + 1)
-        exact = exact_curve([profile for _, profile in shown])
-        axes.plot([value for _, value in exact], [y for y, _ in exact], color="#222222", linewidth=1.1, zorder=2)
+        for exact in exact_curves(shown):
+            axes.plot([value for _, value in exact], [y for y, _ in exact], color="#222222", linewidth=1.1, zorder=2)
         handles = [Line2D([], [], color="#222222", linewidth=1.1, label="exact")]
         for (run, profile), text in zip(shown, labels):
             look = scheme_looks[run["scheme"]]
@@ -65,5 +67,6 @@ def picture(name, group, field, runs, scheme_looks, stamp):
         described = f"{len(shown)} schemes, {sum(len(thinned(profile)) for _, profile in shown)} particles shown"
         drawing = figures.finish(canvas, name, f"{field}, {group.label}", described, stamp, DOTS_PER_INCH)
     ended = [run["scheme"] for run, _ in shown if not run["survived"]]
-    text = f"{title[0].upper()}{title[1:]} of the particles at the end of the finest run that kept them, over the exact curve."
-    return figures.Picture(name, text + (f" Ended early: {', '.join(ended)}." if ended else ""), drawing)
+    text = f"{figures.sentence(title)} of the particles at the end of the finest run that kept them, over the exact curve."
+    whose = ", and the curve is not of their times" if len(ended) < len(shown) else ""
+    return figures.Picture(name, text + (f" Ended early: {', '.join(ended)}{whose}." if ended else ""), drawing)

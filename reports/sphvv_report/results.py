@@ -17,17 +17,18 @@ FORMAT = "sphvv-results"
 FORMAT_VERSION = 1
 DEEPEST = 32  # levels of groups; a file that nests deeper is damaged or made to hang its readers
 
-# The members a report stands on. A trailing "?" marks one that may be missing (JSON null is "no member").
+# The members a report stands on. A trailing "?" marks one that may be missing (JSON null is "no member"), a "!" one that may not be null, as an
+# array may not that must be there.
 # A list holds the schema of its entries; "number" and "text" entries of a table may be null.
 PARAMETER = {"name": "text", "value?": "any", "unit?": "text", "summary?": "text"}
 VARIANT = {"scheme": "text", "name": "text"}
 CASE = {"name": "text", "group?": "text", "variants?": [VARIANT], "summary?": "text", "equations?": "text", "source?": "text", "reference?": "text", "dimension?": "number",
         "reference_length?": "number", "domain?": "text", "parameters?": [PARAMETER]}
-SAMPLE = {"n": "number", "h": "number", "dx": "number", "particles": "number", "dt": "number", "steps": "number",
+SAMPLE = {"n!": "number", "h!": "number", "dx": "number", "particles": "number", "dt": "number", "steps": "number",
           "l1": "number", "l2": "number", "linf": "number", "l1_abs": "number", "l2_abs": "number", "linf_abs": "number",
           "relative": "flag", "l2_spread": "number", "seeds": "number", "seconds": "number", "seconds_spread": "number",
           "repeats": "number", "cpu_seconds": "number", "pair_evaluations": "number", "solver_iterations": "number",
-          "matrix_entries": "number", "particle_steps": "number", "survived": "flag", "diagnosis": "text"}
+          "matrix_entries": "number", "particle_steps": "number", "survived!": "flag", "diagnosis": "text"}
 EXPECTED = {"low?": "number", "high?": "number", "text?": "text", "source?": "text", "fate?": "text"}
 FIT = {"norm?": "text", "order?": "number", "ci95?": "number", "verdict": "text", "reason?": "text", "waiver?": "text",
        "order_l1?": "numbers", "order_l2?": "numbers", "order_linf?": "numbers"}
@@ -42,7 +43,7 @@ MARK = {"time": "number", "l2_velocity": "number", "l2_pressure": "number", "max
         "maximum_speed_exact": "number", "energy_error": "number"}
 PICTURE = {"time?": "number", "box?": "numbers", **{name + "?": "numbers" for name in ("x", "y", "speed", "pressure")}}
 PROFILE = {"field": "text", "coordinate": "numbers", "ours": "numbers", "exact": "numbers"}
-RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?": "number", "survived": "flag",
+RUN = {"case": "text", "group": "text", "scheme": "text", "n!": "number", "seed?": "number", "survived!": "flag",
        "diagnosis?": "text", "end_time?": "number", "setup_seconds?": "number", "bytes_per_particle?": "number",
        "neighbour_bytes_per_particle?": "number", "pair_bytes_per_particle?": "number",
        "stages": [STAGE], "fields": [RUN_FIELD], "settings?": "object", "energy_error?": "number",
@@ -51,44 +52,44 @@ RUN = {"case": "text", "group": "text", "scheme": "text", "n": "number", "seed?"
 CURVE = {"scheme": "text", "n": "numbers", "error": "numbers", "cost": "numbers"}
 FRONT_ROW = {"scheme": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
 FRONT = {"group": "text", "field": "text", "norm": "text", "cost": "text", "curves": [CURVE], "rows": [FRONT_ROW]}
-CLAIM = {"group": "text", "id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "agrees": "flag", "binding?": "flag"}
+CLAIM = {"group": "text", "id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "agrees!": "flag", "binding?": "flag"}
 OPERATOR = {"name": "text", "summary": "text", "formula": "text", "source": "text", "approximates": "text", "order_source": "text"}
-OPERATOR_SAMPLE = {"n": "number", "h": "number", "dx": "number", "particles": "number", "l1": "number", "l2": "number",
+OPERATOR_SAMPLE = {"n!": "number", "h!": "number", "dx!": "number", "particles": "number", "l1": "number", "l2": "number",
                    "linf": "number", "l1_abs": "number", "l2_abs": "number", "linf_abs": "number", "l2_spread": "number",
                    "seeds": "number", "undetermined": "number", "pair_evaluations": "number"}
-OPERATOR_STUDY = {"operator": "text", "approximates": "text", "dimension": "number", "arrangement": "text", "path": "text",
+OPERATOR_STUDY = {"operator": "text", "approximates": "text", "dimension!": "number", "arrangement": "text", "path": "text",
                   "kernel": "text", "tier": "text", "expected?": EXPECTED, "fit": FIT, "samples": [OPERATOR_SAMPLE]}
-OPERATOR_PROPERTY = {"operator": "text", "dimension": "number", "property": "text", "arrangement": "text", "value": "number",
-                     "bound": "number", "at_least": "flag", "passes": "flag"}
+OPERATOR_PROPERTY = {"operator": "text", "dimension!": "number", "property": "text", "arrangement": "text", "value": "number",
+                     "bound!": "number", "at_least!": "flag", "passes!": "flag"}
 OPERATOR_COST = {"operator": "text", "dimension": "number", "nanoseconds_per_pair": "number", "spread": "number",
                  "pairs": "number"}
 OPERATOR_CURVE = {"operator": "text", "error": "numbers", "cost": "numbers"}
 OPERATOR_FRONT_ROW = {"operator": "text", "on_front": "flag", "slower_by": "number", "at_error": "number", "than": "text"}
 OPERATOR_FRONT = {"approximates": "text", "cost": "text", "curves": [OPERATOR_CURVE], "rows": [OPERATOR_FRONT_ROW]}
-KERNEL_CHECK = {"kernel": "text", "dimension": "number", "check": "text", "value": "number", "expected": "number",
-                "tolerance": "number", "passes": "flag", "why": "text"}
+KERNEL_CHECK = {"kernel": "text", "dimension!": "number", "check": "text", "value": "number", "expected": "number",
+                "tolerance": "number", "passes!": "flag", "why": "text"}
 PUBLISHED_FIGURE = {"id": "text", "text": "text", "published": "text", "source": "text", "ours": "text", "value": "number",
-                    "reference?": "number", "tolerance?": "number", "is_bound?": "flag", "agrees": "flag", "waiver": "text"}
+                    "reference?": "number", "tolerance?": "number", "is_bound?": "flag", "agrees!": "flag", "waiver": "text"}
 CONSISTENCY_SUM = {"jitter": "number", "h_over_dx": "number", "neighbours": "number", "worst_zeroth": "number",
                    "worst_first": "number"}
-SEEDED_FAULT = {"name": "text", "file": "text", "summary": "text", "caught": "flag", "caught_by": "text", "seconds": "number"}
+SEEDED_FAULT = {"name": "text", "file": "text", "summary": "text", "caught!": "flag", "caught_by": "text", "seconds": "number"}
 STABILITY_LIMIT = {"study": "text", "scheme": "text", "kernel": "text", "h_over_dx": "number", "limit": "text", "published": "number",
                    "theory": "number", "theory_by?": "text", "measured": "number", "low?": "number", "high?": "number", "verdict": "text",
-                   "passes": "flag", "reason": "text", "runs": "number", "seconds": "number"}
+                   "passes!": "flag", "reason": "text", "runs": "number", "seconds": "number"}
 STABILITY_MAP = {"study": "text", "scheme": "text", "x_name": "text", "x": "numbers", "y_name": "text", "y": "numbers", "theory": "numbers",
-                 "measured": "numbers", "grows": "numbers", "criterion?": "text", "by_criterion?": "numbers", "unstable": "number", "disagreements": "number", "undecided": "number",
-                 "verdict": "text", "passes": "flag", "reason": "text", "seconds?": "number"}
-EXTREME_ROW = {"name": "text", "scheme": "text", "must": "text", "why": "text", "fate": "text", "bound": "number", "survived": "flag",
-               "diagnosis": "text", "error": "number", "steps": "number", "seconds": "number", "verdict": "text", "passes": "flag",
+                 "measured": "numbers", "grows": "numbers", "criterion?": "text", "by_criterion?": "numbers", "unstable": "number", "disagreements!": "number", "undecided": "number",
+                 "verdict": "text", "passes!": "flag", "reason": "text", "seconds?": "number"}
+EXTREME_ROW = {"name": "text", "scheme": "text", "must": "text", "why": "text", "fate": "text", "bound": "number", "survived!": "flag",
+               "diagnosis": "text", "error": "number", "steps": "number", "seconds": "number", "verdict": "text", "passes!": "flag",
                "waiver": "text", "reason": "text"}
 CONDITIONING_ROW = {"study": "text", "name": "text", "laplacian": "text", "boundary": "text", "columns": "number", "rows": "number",
-                    "jitter": "number", "seed": "number", "coincident": "flag", "mean": "number", "unknowns": "number",
-                    "surface_share": "number", "least": "number", "greatest": "number", "condition": "number", "theory": "number",
+                    "jitter!": "number", "seed": "number", "coincident": "flag", "mean": "number", "unknowns!": "number",
+                    "surface_share!": "number", "least": "number", "greatest": "number", "condition": "number", "theory": "number",
                     "condition_jacobi": "number", "theory_jacobi": "number", "diagonal_ratio": "number", "negative_share": "number",
                     "least_of_field": "number", "iterations_jacobi": "number", "bound_jacobi": "number", "iterations_two_level": "number",
                     "tolerance": "number", "converged": "flag", "residual": "number"}
 CONDITIONING_CHECK = {"study": "text", "subject": "text", "name": "text", "value": "number", "low": "number", "high": "number",
-                      "tolerance": "number", "why": "text", "verdict": "text", "passes": "flag", "reason": "text"}
+                      "tolerance": "number", "why": "text", "verdict": "text", "passes!": "flag", "reason": "text"}
 STABILITY = {"stability_limits?": [STABILITY_LIMIT], "stability_maps?": [STABILITY_MAP], "extreme_rows?": [EXTREME_ROW],
              "conditioning_rows?": [CONDITIONING_ROW], "conditioning_checks?": [CONDITIONING_CHECK]}
 WORKBENCH = {"operators?": [OPERATOR], "operator_studies?": [OPERATOR_STUDY], "operator_properties?": [OPERATOR_PROPERTY],
@@ -308,7 +309,7 @@ def check_object(tree, schema, path):
     if not isinstance(tree, dict):
         raise ValueError(f"{path or 'the root'} is not an object")
     for key, kind in schema.items():
-        name = key.rstrip("?")
+        name = key.rstrip("?!")
         where = f"{path}.{name}" if path else name
         optional = key.endswith("?")
         if name not in tree and not optional:
@@ -321,6 +322,8 @@ def check_object(tree, schema, path):
             check_object(tree[name], kind, where)
         else:
             tree[name] = check_entry(tree[name], kind, where)
+            if tree[name] is None and (key.endswith("!") or kind == "numbers" and not optional):
+                raise ValueError(f"{where} is null")
 
 
 def check_list(trees, schema, path):
@@ -330,15 +333,11 @@ def check_list(trees, schema, path):
         check_object(tree, schema, f"{path}[{index}]")
 
 
-def check_study(study, path, needed):
-    """What the schema cannot say: known verdicts, rungs that say which they are, as many pairwise orders as rungs."""
+def check_study(study, path):
+    """What the schema cannot say: known verdicts, as many pairwise orders as rungs."""
     fit = study["fit"]
     if fit["verdict"] not in VERDICTS:
         raise ValueError(f"{path}.fit.verdict is '{fit['verdict']}', not one of {', '.join(VERDICTS)}")
-    for index, sample in enumerate(study["samples"]):
-        for name in needed:
-            if sample[name] is None:
-                raise ValueError(f"{path}.samples[{index}].{name} is null")
     for name in ("order_l1", "order_l2", "order_linf"):
         if fit[name] and len(fit[name]) != len(study["samples"]):
             raise ValueError(f"{path}.fit.{name} has {len(fit[name])} entries for {len(study['samples'])} rungs")
@@ -372,16 +371,16 @@ def check_map(chart, path):
             raise ValueError(f"{path}.{name} is not one value for each of x and y")
     if any(None in chart[name] for name in ("x", "y", "grows")) or chart["unstable"] is None:
         raise ValueError(f"{path}: x, y, grows and unstable must be finite")
-    if chart["criterion"] and (len(chart["by_criterion"]) != points or None in chart["by_criterion"]):
+    if chart["criterion"] and (len(chart["by_criterion"] or []) != points or None in chart["by_criterion"]):
         raise ValueError(f"{path}.by_criterion is not one finite value for each of x and y")
 
 
 def check_result(tree):
     """Checks the tree of a file; ValueError names the first member that is missing or wrong."""
     check_object(tree, RESULT, "")
-    for kind, needed in (("studies", ("n", "h")), ("operator_studies", ("n", "h", "dx"))):
+    for kind in KEYS:
         for index, study in enumerate(tree[kind]):
-            check_study(study, f"{kind}[{index}]", needed)
+            check_study(study, f"{kind}[{index}]")
     for kind in ("fronts", "operator_fronts"):
         for index, front in enumerate(tree[kind]):
             for number, curve in enumerate(front["curves"]):
@@ -429,8 +428,10 @@ def read_result(path):
 # What identifies a study, and the part of it that a message names.
 KEYS = {"studies": ("case", "group", "scheme", "field", "tier"),
         "operator_studies": ("operator", "dimension", "arrangement", "path", "kernel", "tier")}
-REPEATABLE = {"operator_properties", "kernel_checks", "known_errors", "published_figures", "consistency_sums", "seeded_faults"}
-NAMED = {"cases", "operators"}  # these explain what others refer to by name: any file's entry will do
+REPEATABLE = {"operator_properties", "kernel_checks", "known_errors", "published_figures", "consistency_sums", "seeded_faults",
+              *(name.rstrip("?") for name in STABILITY)}
+# These explain what others refer to by a key, which this makes of an entry: any file's entry will do.
+NAMED = {"cases": lambda case: (case["name"], case["group"]), "operators": lambda operator: operator["name"]}
 
 
 def refuse_twice(results, kind):
@@ -447,16 +448,16 @@ def refuse_twice(results, kind):
 
 
 def distinct(entries):
-    """The entries without those that another file repeats in every value."""
+    """The entries without those that another file repeats in every value but the time that it took."""
     kept = []
     for entry in entries:
-        if not any(all(entry[key] == other[key] for key in entry if key != "result") for other in kept):
+        if not any(all(entry[key] == other.get(key) for key in entry if key not in ("result", "seconds")) for other in kept):
             kept.append(entry)
     return kept
 
 
 def merge(results):
-    """Several result files as one: {"files": results} and every list of RESULT, "cases" and "operators" by name.
+    """Several result files as one: {"files": results} and every list of RESULT, "cases" by name and group, "operators" by name.
 
     A study that stands in two files is refused: which of the two a reader sees must not depend on the order of the
     arguments. Each entry remembers its file. Fronts stay apart, since a front only ranks what one file holds. A check that
@@ -469,7 +470,7 @@ def merge(results):
         if kind in NAMED:
             merged[kind] = {}
             for entry in (entry for result in results for entry in result[kind]):
-                merged[kind].setdefault(entry["name"], entry)
+                merged[kind].setdefault(NAMED[kind](entry), entry)
         else:
             entries = [dict(entry, result=result) for result in results for entry in result[kind]]
             merged[kind] = distinct(entries) if kind in REPEATABLE else entries

@@ -55,15 +55,21 @@ def extreme_table(names, scenes):
 
 
 def extreme_matrix(names, scenes):
-    """One row a scene, one column a scheme: what became of it. Variants of one scheme are scenes of their own."""
+    """One row a scene, one column a scheme: what became of it, of several files the worst. Variants of one scheme are scenes of their own."""
     schemes = sorted({row["scheme"].split(":")[0] for row in scenes})
-    rows = {}
+    rows, held = {}, {}
     for row in scenes:
         scheme, _, variant = row["scheme"].partition(":")
         name = f"{row['name']} ({variant})" if variant else row["name"]
-        rows.setdefault(name, {"name": name})[scheme] = extreme_cell(row)
+        held[name, scheme] = max(held.get((name, scheme), row), row, key=badness)
+        rows.setdefault(name, {"name": name})[scheme] = extreme_cell(held[name, scheme])
     return Table(names.unique("extreme-matrix"), "Scenes at and past the edge of what the schemes are made for",
                  [Column("name", "scene")] + [Column(scheme, scheme) for scheme in schemes], list(rows.values()), [MATRIX_NOTE])
+
+
+def badness(row):
+    """A key that sorts what became of one scene: passes, and by how much; waived; FAIL."""
+    return not row["passes"], not row["waiver"], row["error"] / row["bound"] if row["bound"] and row["error"] is not None else 0.0
 
 
 def extreme_cell(row):

@@ -110,7 +110,7 @@ class Table:
                  f"\\begin{{longtable}}{{{begin}}}",
                  f"\\caption{{{latex_text(self.full_caption)}\\label{{tab:{self.name}}}}}\\\\", "\\toprule", heads, "\\midrule", "\\endfirsthead",
                  "\\toprule", heads, "\\midrule", "\\endhead", "\\bottomrule", "\\endfoot"]
-        lines += [" & ".join(map(latex_cell, row)) + " \\\\" for row in cells]
+        lines += ["{}" + " & ".join(map(latex_cell, row)) + " \\\\" for row in cells]  # {}: the \\ before it would take a [ or * for its own
         lines.append("\\end{longtable}")
         lines += ["{\\raggedright " + latex_text(note) + "\\par}" for note in self.all_notes()]
         return "\n".join(lines) + "}\n"
@@ -150,7 +150,8 @@ class Table:
         return "<tr>" + "".join(cells) + "</tr>"
 
     def html_cell(self, column, row, is_first):
-        text = breakable(self.text(column, row)) if column.kind in ("text", "link") else html.escape(numbers.for_page(self.text(column, row)))
+        text = self.text(column, row)
+        text = breakable(text if column.kind in ("text", "link") else numbers.for_page(text))
         if column.kind == "verdict":
             text = f'<span class="chip {row["status_key"]}">{text}</span>'
         if column.kind in ("link", "verdict") and row.get("anchor"):
@@ -201,9 +202,9 @@ def csv_value(value):
 
 
 def markdown_text(text):
-    """Text that can neither break a Markdown table nor smuggle HTML into it."""
+    """Text that can neither break a Markdown table nor smuggle HTML, emphasis or mathematics into it."""
     text = " ".join(str(text).split())
-    return html.escape(text, quote=False).replace("\\", "\\\\").replace("|", "\\|").replace("`", "\\`")
+    return re.sub(r"[\\|`*$]", r"\\\g<0>", html.escape(text, quote=False))
 
 
 TEXT_WIDTH = 481  # points of 170 mm: A4 with margins of 20 mm

@@ -14,7 +14,7 @@ import unittest
 import xml.dom.minidom
 
 import synthetic
-from sphvv_report import budgets, figures, findings, nights, numbers, output, overview, results
+from sphvv_report import budgets, figures, findings, nights, numbers, output, overview, profiles, results, stability
 from sphvv_report.__main__ import main
 from sphvv_report.tables import (LETTER, SIZES, TABCOLSEP, TEXT_WIDTH, Column, Names, Table, latex_layout, latex_text,
                                  markdown_text)
@@ -390,7 +390,7 @@ class Variants(WholePage, unittest.TestCase):
         blown_up = [row for row in rows if row["scheme"] == synthetic.BLOWN_UP]
         self.assertEqual((blown_up[-1]["l2_velocity"], blown_up[-1]["maximum_speed"]), ("", ""))
         self.assertAlmostEqual(float(rows[0]["speed_excess"]), float(rows[0]["maximum_speed"]) / float(rows[0]["maximum_speed_exact"]) - 1)
-        for words in ("Error over time at n = 40", "Crosses mark runs that ended early", "Errors above 10 are cut off", "Without a history: isph_mls."):
+        for words in ("Error over time at n = 40", "Crosses mark runs that ended early", "Errors above 10 are cut off", "Not drawn: isph_mls."):
             self.assertIn(words, self.text)
         self.assertIn("isph_lee: ended early at t = 0.231 s", self.figure("error-over-time"))
 
@@ -563,13 +563,49 @@ class Odd(WithFolder):
         tree["fronts"] = []
         files = self.report(tree)
         self.assertFalse(any(name.startswith("figures/") for name in files))
-        self.assertIn("every run ended early", files["index.html"].decode())
+        self.assertIn("No rung has an error: every run ended early", files["index.html"].decode())
 
     def test_same_study_in_two_tiers(self):
         tree = synthetic.small()
         tree["studies"].append(dict(tree["studies"][0], tier="full"))
         text = Page(self.report(tree)["index.html"].decode()).all_text()
         self.assertIn("velocity (full tier)", text)
+
+    def test_two_tiers_of_different_rungs(self):
+        tree = synthetic.small()
+        finer = lambda study: [dict(sample, n=2 * sample["n"] + 1) for sample in study["samples"]]
+        tree["studies"] += [dict(study, tier="full", samples=finer(study)) for study in tree["studies"][:2]]
+        self.assertEqual(self.rows_of_schemes(self.report(tree))["wcsph"]["l2_velocity"], repr(tree["studies"][0]["samples"][-1]["l2"]))
+
+    def test_profiles(self):
+        """The exact curve is that of the runs that reached their end; a run without a study is not drawn."""
+        tree = synthetic.small()
+        profile = {"field": "velocity_x", "coordinate": [0.0, 1.0], "ours": [0.1, 0.9], "exact": [0.0, 1.0]}
+        for run in tree["runs"]:
+            if run["n"] == 160:
+                run["profiles"] = [dict(profile, exact=[0.0, 1.0 if run["survived"] else 0.2]), dict(profile, field="")]
+        tree["runs"].append(dict(tree["runs"][-1], scheme="nobody", n=320))
+        files = self.report(tree)
+        self.assertIn("Ended early: isph_df, and the curve is not of their times.", files["index.html"].decode())
+        self.assertNotIn("nobody", files["figures/taylor_green-re-100__velocity_x__profile.svg"].decode())
+        shown = [(run, run["profiles"][0]) for run in tree["runs"] if "profiles" in run]
+        self.assertEqual(profiles.exact_curves(shown), [[(0.0, 0.0), (1.0, 1.0)]])
+        lost = [(dict(run, survived=False), kept) for run, kept in shown[:2]]
+        self.assertEqual(profiles.exact_curves(lost), [[(0.0, 0.0), (1.0, 1.0)], [(0.0, 0.0), (1.0, 0.2)]])
+
+    def test_errors_that_are_all_zero_have_not_ended_early(self):
+        tree = synthetic.small()
+        for study in tree["studies"]:
+            study["samples"] = [dict(sample, survived=True, l1=0.0, l2=0.0, linf=0.0) for sample in study["samples"]]
+        source = self.report(tree)["index.html"].decode()
+        self.assertIn("all are zero or not finite", source)
+        self.assertNotIn("No rung has an error: every run ended early", source)
+
+    def test_settings_keep_their_digits(self):
+        tree = synthetic.small()
+        for run in tree["runs"]:
+            run["settings"]["c0"] = 40.385826123
+        self.assertIn("c0,40.385826123,", self.report(tree)["tables/taylor_green-re-100__settings.csv"].decode())
 
     def test_seeds_show_their_spread(self):
         tree = synthetic.small()
@@ -589,6 +625,60 @@ class Odd(WithFolder):
         self.assertNotIn("INTERRUPTED", self.report(tree)["index.html"].decode())
         tree["provenance"]["interrupted"] = True
         self.assertIn("lacks what was not complete", self.report(tree, "interrupted")["index.html"].decode())
+
+    def test_each_group_states_its_own_case(self):
+        """One case in two files, whose groups have different domains and parameters."""
+        paths = []
+        for group, domain in (("taylor_green re=100", "the unit square"), ("taylor_green re=7", "a box of its own")):
+            tree = synthetic.small()
+            for kind in ("studies", "runs", "fronts"):
+                tree[kind] = [dict(entry, group=group) for entry in tree[kind]]
+            for study in tree["studies"]:
+                study["settings"] = {}
+            tree["cases"] = [dict(tree["cases"][0], group=group, domain=domain, parameters=[{"name": "side", "value": domain, "unit": "m", "summary": ""}])]
+            paths.append(synthetic.write(self.path(f"{len(paths)}.h5"), tree))
+        self.assertEqual(run(*paths, "--out", self.path("out"), "--quiet"), (0, "", ""))
+        files = all_files(self.path("out"))
+        text = Page(files["index.html"].decode()).all_text()
+        self.assertIn("Domain a box of its own", text)
+        self.assertIn("Domain the unit square", text)
+        self.assertIn("a box of its own", files["tables/taylor_green-re-7__parameters.csv"].decode())
+
+    def rows_of_schemes(self, files):
+        content = files["tables/taylor_green-re-100__schemes.csv"].decode()
+        return {row["scheme"]: row for row in csv.DictReader(io.StringIO(content))}
+
+    def test_the_worst_seed_stands_beside_the_means(self):
+        tree = synthetic.small()
+        for study in tree["studies"]:
+            for sample in study["samples"]:
+                sample["seeds"] = 3
+        more = [dict(run, seed=seed, **{name: run[name] and factor * run[name] for name in ("energy_error", "minimum_spacing")})
+                for run in tree["runs"] for seed, factor in ((2, 3.0), (3, -0.5))]
+        of = {run["scheme"]: run for run in tree["runs"] if run["n"] == 160}
+        for run in more:
+            run["minimum_spacing"] = abs(run["minimum_spacing"])
+        tree["runs"] += more
+        files = self.report(tree)
+        rows = self.rows_of_schemes(files)
+        self.assertAlmostEqual(float(rows["wcsph"]["minimum_spacing"]), 0.5 * of["wcsph"]["minimum_spacing"])
+        self.assertAlmostEqual(float(rows["wcsph"]["energy_error"]), 3 * of["wcsph"]["energy_error"])
+        self.assertEqual((rows["isph_df"]["survived"], rows["isph_df"]["minimum_spacing"], rows["isph_df"]["energy_error"]), ("0", "", ""))
+        self.assertIn("closest pair are those of the worst seed", files["index.html"].decode())
+
+    def test_no_ratio_of_the_times_of_two_machines(self):
+        trees = [synthetic.small(), synthetic.small()]
+        for tree, is_ours in zip(trees, (lambda scheme: scheme == "wcsph", lambda scheme: scheme != "wcsph")):
+            for kind in ("studies", "runs"):
+                tree[kind] = [entry for entry in tree[kind] if is_ours(entry["scheme"])]
+        for threads, words in ((2, "× fastest"), (1, "of different processors or numbers of threads")):
+            trees[1]["provenance"] = dict(trees[1]["provenance"], threads=threads)
+            paths = [synthetic.write(self.path(f"{index}.h5"), tree) for index, tree in enumerate(trees)]
+            self.assertEqual(run(*paths, "--out", self.path("out"), "--quiet"), (0, "", ""))
+            files = all_files(self.path("out"))
+            self.assertIn(words, files["index.html"].decode())
+            self.assertEqual({"slowdown", "throughput"} & self.rows_of_schemes(files)["wcsph"].keys(), {"slowdown", "throughput"} if threads == 2 else set())
+            self.assertIn("ended early: minimum spacing", files["tables/taylor_green-re-100__schemes.md"].decode())
 
     def test_expected_end_that_did_not_come_is_a_finding(self):
         tree = synthetic.small()
@@ -645,6 +735,10 @@ class Odd(WithFolder):
         self.assertIn("0 of 1 extreme scenes end as they must, 1 waived", text)
         self.assertNotIn("FAIL a single particle", text)
         self.assertIn("no scheme can hold it", text[text.index("Waivers"):text.index("Provenance")])
+        needless = {**synthetic.small(), **synthetic.stability()}
+        needless["extreme_rows"][0].update(waiver="no scheme can hold it", passes=True, verdict="PASS", error=5e-13)
+        text = Page(self.report(needless, "needless")["index.html"].decode()).all_text()
+        self.assertIn("WAIVED a single particle, wcsph : passes, although waived", text)
         table = files["tables/stability-limits.csv"].decode()
         self.assertIn("isph_df", table)
         picture = next(content.decode() for name, content in files.items() if name.startswith("figures/stability-tensile_map") and name.endswith(".svg"))
@@ -656,6 +750,14 @@ class Odd(WithFolder):
             tree["stability_maps"] = [{**synthetic.stability()["stability_maps"][0], **broken}]
             with self.subTest(broken), self.assertRaises(ValueError):
                 results.check_result(json.loads(json.dumps(tree)))
+
+    def test_of_one_scene_in_two_files_the_worst_is_shown(self):
+        row = synthetic.stability()["extreme_rows"][0]
+        outcomes = {"FAIL": row, "waived": dict(row, waiver="known"), "0.5": dict(row, passes=True, error=5e-13), "0.1": dict(row, passes=True, error=1e-13)}
+        for first, worst in enumerate(outcomes):
+            rest = list(outcomes.values())[first:]
+            for scenes in (rest, rest[::-1]):
+                self.assertEqual(stability.extreme_matrix(Names(), scenes).rows, [{"name": "a single particle", "wcsph": worst}])
 
     def test_stability_of_an_older_file(self):
         tree = {**synthetic.small(), **synthetic.stability()}
@@ -679,6 +781,25 @@ class Odd(WithFolder):
         tree["studies"][0]["fit"]["waiver"] = "left over from last year"
         text = Page(self.report(tree)["index.html"].decode()).all_text()
         self.assertIn("Waiver (not needed).", text)
+
+
+class Paper(WithFolder):
+    def test_only_raw_numbers_and_what_needs_a_screen_are_left_out(self):
+        """Folded evidence prints: the style sheet opens it, and hides nothing else that a fold could hold."""
+        with open(os.path.join(os.path.dirname(findings.__file__), "page.css"), encoding="utf-8") as stream:
+            style = stream.read().split("@media print")[1]
+        self.assertIn("  details::details-content { content-visibility: visible;", style)
+        self.assertEqual(re.findall(r"^ *([^{}\n]*) \{[^}]*display: none", style, re.MULTILINE), [".files, nav", ".raw"])
+        tree = {**synthetic.workbench(), **synthetic.stability(), **{kind: synthetic.variants(across=4)[kind] for kind in ("cases", "studies", "runs")}}
+        tree["operator_properties"] *= 30
+        for index, check in enumerate(tree["operator_properties"]):
+            tree["operator_properties"][index] = dict(check, arrangement=f"number {index}")
+        tree["extreme_rows"][0]["waiver"] = "known"
+        source = self.report(tree)["index.html"].decode()
+        folds = re.findall(r"<details([^>]*)><summary>(.*?)</summary>", source)
+        self.assertEqual(sorted(summary.split()[1] for attributes, summary in folds if 'class="raw"' in attributes), ["4", "mark", "point"])
+        for words in ("more that failed, ended early or cannot decide", "known: waived", "Every check, with its reason", "hold", "2-D square, h/dx fixed"):
+            self.assertTrue([summary for attributes, summary in folds if words in summary and "raw" not in attributes], words)
 
 
 class Guide(WithFolder):
@@ -779,6 +900,7 @@ class Beside(WithFolder):
         self.assertFalse(any("stability_limits" in name for name in files))
         for words in ("fitted order", "work (pairs + matrix entries)", "run time [s]", "verdict changed", "1111111", "11-22"):
             self.assertIn(words, svg)
+        self.assertIn("Run times are not joined: they differ between machines and loads, too.", text)
 
     def test_history_of_one_night_and_of_another_tier(self):
         quick = {**synthetic.nights(1)[0], "tier": "quick"}
@@ -795,6 +917,8 @@ class Beside(WithFolder):
         self.assert_refused(["--history", self.written("a.jsonl", {"date": "today"})], "line 1", "tier or revision")
         self.assert_refused(["--history", self.written("a.jsonl", {**good, "rows": [{"group": "x"}]})], "rows do not say")
         self.assert_refused(["--history", self.written("a.jsonl", {**good, "rows": [{**good["rows"][0], "l2": "0.1"}]})], "l2 is not a number")
+        self.assert_refused(["--history", self.written("a.jsonl", {**good, "seconds": "an hour"})], "seconds is not a number")
+        self.assert_refused(["--history", self.written("a.jsonl", {**good, "started": "now", "program": ["x"]})], "program is not a text")
 
     def test_swapped_files(self):
         """A baseline, a comparison or a history where a result file belongs."""
@@ -861,6 +985,7 @@ class Failing(WithFolder):
             self.assertEqual(status, 2)
             self.assertIn(words, error)
             self.assertFalse(os.path.exists(self.path("page")))
+        self.assertEqual(run(self.source, "--out", self.path("page"), "--json", self.path("page", "tables", "s.json"), "--quiet"), (0, "", ""))
 
     def test_folder_in_the_way_leaves_everything_as_it_was(self):
         os.makedirs(self.path("out", "index.html"))
@@ -953,6 +1078,7 @@ class Pieces(unittest.TestCase):
         self.assertEqual(latex_text("x" * 40).replace(r"\allowbreak{}", ""), "x" * 40)
         self.assertIn(r"\allowbreak{}", latex_text("x" * 40))
         self.assertEqual(markdown_text("a|b\n<i>"), r"a\|b &lt;i&gt;")
+        self.assertEqual(markdown_text("2*3*4 $x$ \\ `c`"), r"2\*3\*4 \$x\$ \\ \`c\`")
 
     def test_looks_differ_without_colour(self):
         """Colour and line, and colour and marker, are pairs of their own; so are line and marker."""
@@ -981,6 +1107,7 @@ class Pieces(unittest.TestCase):
         self.assertIn(r"n & $L_2$ [m/\allowbreak{}s] \\", latex)
         self.assertIn("$20$ & $1.23\\times10^{-2}$ \\\\", latex)
         self.assertIn("$40$ & -- \\\\", latex)
+        self.assertIn("\n{}[0, 1] m", Table("t", "errors", [Column("a", "a")], [{"a": "x"}, {"a": "[0, 1] m"}]).to_latex())  # no option of the \\ before it
         self.assertEqual(latex.count("{longtable}"), 2)
 
     def test_columns_fit_on_paper(self):
@@ -1012,6 +1139,33 @@ class Pieces(unittest.TestCase):
         self.assertIn((("taylor_green re=100", "isph_dfs", "pressure"), 1, "PASS", "not run"), nights.verdict_changes(nights.ladders(lines), lines))
         lines[1]["complete"] = False  # a night of a part of the studies
         self.assertNotIn("not run", str(nights.verdict_changes(nights.ladders(lines), lines)))
+
+    def test_trends(self):
+        """What moved, what is ringed and what is joined, over nights that lack a row, end at another rung, or lost the finest one."""
+        lines = synthetic.nights(5, faulty=())
+        for line, order in zip(lines, (1.08, 1.08, 1.1, 1.4, 1.08)):
+            line["rows"][1]["order"] = order
+        steady, moved = [(line["rows"][0]["group"], "isph_dfs", field) for field in ("velocity", "pressure")]
+        course = nights.ladders(lines)[moved]
+        self.assertTrue(nights.has_moved(course))  # 0.32 is more than 0.05 and the two intervals of 0.1
+        self.assertFalse(nights.has_moved(course[:3]))
+        self.assertTrue(nights.has_moved([dict(course[0], order=None), course[1]]))
+        self.assertFalse(nights.has_moved(nights.ladders(lines)[steady]))
+
+        velocity = [line["rows"][0] for line in lines]
+        velocity[2].update(verdict="FAIL")
+        velocity[3].update(n=160, verdict="FAIL")
+        velocity[4].update(n=160, verdict="FAIL", survived=False, l2=None, pair_evaluations=1.0)
+        del lines[1]["rows"][0]
+        course = nights.ladders(lines)[steady]
+        self.assertEqual([row and row.get("changed") for row in course], [None, None, True, False, False])
+        self.assertEqual([nights.drawable(row, nights.PANELS[2]) for row in course], [5e8, None, 5e8, 5e8, None])
+        for panel, line in zip(nights.PANELS, ("-", "-", "-", "None")):  # run times are not joined
+            axes = figures.Canvas().subplots()
+            nights.draw_panel(axes, panel, {"isph_dfs": course}, figures.looks(["isph_dfs"]))
+            last = [3, 4] if panel[0] == "order" else [3]  # of the ladder, not of the rung that ended early
+            self.assertEqual([list(drawn.get_xdata()) for drawn in axes.lines], [[0, 2], last, [2]])  # the last is the ring
+            self.assertEqual(axes.lines[0].get_linestyle(), line)
 
     def test_of_several_lines_of_one_night_the_last_counts(self):
         lines = synthetic.nights()
@@ -1045,12 +1199,18 @@ class Pieces(unittest.TestCase):
 
     def test_an_early_end_that_is_waived_is_known(self):
         study = {"scheme": "wcsph", "field": "velocity", "anchor": "s", "expected": {"low": None, "high": None, "fate": None},
-                 "fit": {"verdict": "FAIL", "waiver": "", "reason": ""}, "samples": [{"n": 40, "survived": False, "diagnosis": "pairs"}]}
+                 "fit": {"verdict": "FAIL", "waiver": "", "reason": "", "order": None}, "samples": [{"n": 40, "survived": False, "diagnosis": "pairs"}]}
         group = findings.Group("g", "c", studies=[study])
         self.assertEqual([(finding.severity, finding.status) for finding in findings.early_end_finding(group, "wcsph")], [(1, "lost")])
         study["fit"]["waiver"] = "pairs pass below 0.25 dx"
         self.assertEqual([(finding.severity, finding.status) for finding in findings.early_end_finding(group, "wcsph")], [(3, "waived")])
-        self.assertIn("1 ladder ended early, as expected or waived", findings.summary([group], findings.early_end_finding(group, "wcsph")))
+        summary = findings.summary([group], findings.early_end_finding(group, "wcsph"))
+        self.assertIn("1 verdict (1 WAIVED); 1 ladder ended early, as expected or waived", summary)  # no order verdict: nothing was fitted
+
+    def test_a_waived_survival_is_listed_once(self):
+        study = {"scheme": "wcsph", "field": "velocity", "anchor": "s", "expected": {"low": None, "high": None, "fate": "ends_early"},
+                 "fit": {"verdict": "FAIL", "waiver": "it holds on", "reason": "", "order": None}, "samples": [{"n": 40, "survived": True}]}
+        self.assertEqual([finding.status for finding in findings.findings([findings.Group("g", "c", studies=[study])])], ["waived"])
 
     def test_colours_of_chips_are_legible(self):
         """Text on its ground at 4.5 : 1 or better, read from the style sheet itself."""

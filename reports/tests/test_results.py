@@ -232,6 +232,15 @@ class Refusing(InFolder):
         refuse(lambda tree: tree.update(operator_costs=[{"operator": 7}]), "operator_costs[0].operator is not a text")
         refuse(lambda tree: tree.update(seeded_faults=[dict(tree["seeded_faults"][0], caught="yes")]), "seeded_faults[0].caught is not a boolean")
 
+    def test_null_where_a_value_must_be(self):
+        tree = {**synthetic.workbench(), **synthetic.stability(), **{kind: synthetic.small()[kind] for kind in ("studies", "runs")}}
+        for kind, names in {"runs": ("n", "survived"), "operator_properties": ("dimension", "bound", "passes"), "operator_studies": ("dimension",),
+                            "kernel_checks": ("dimension", "passes"), "stability_maps": ("disagreements", "x", "theory"),
+                            "conditioning_rows": ("jitter", "unknowns", "surface_share")}.items():
+            for name in names:
+                with self.subTest(kind=kind, name=name), self.assertRaisesRegex(ValueError, rf"^{kind}\[0\]\.{name} is null$"):
+                    results.check_result({**tree, kind: [{**tree[kind][0], name: None}]})
+
     def test_a_scene_that_passes_its_bound_has_an_error(self):
         tree = {**synthetic.workbench(), **synthetic.stability()}
         tree["extreme_rows"][0].update(passes=True, error=None)
@@ -282,7 +291,20 @@ class Merging(InFolder):
         other = synthetic.write(os.path.join(self.folder, "other.h5"), tree)
         merged = merge([read_result(self.path), read_result(other)])
         self.assertEqual(len(merged["studies"]), 2 * len(tree["studies"]))
-        self.assertEqual(set(merged["cases"]), {"taylor_green", "abc_flow"})
+        self.assertEqual(set(merged["cases"]), {("taylor_green", ""), ("abc_flow", "")})
+
+    def test_what_two_files_repeat_counts_once(self):
+        """A time is no outcome: the same checks, run again."""
+        trees = [{**synthetic.workbench(), **synthetic.stability(), "operator_studies": []} for _ in range(2)]
+        for kind in ("stability_limits", "stability_maps", "extreme_rows", "seeded_faults"):
+            trees[1][kind] = [dict(entry, seconds=entry["seconds"] + 1) for entry in trees[1][kind]]
+        paths = [synthetic.write(os.path.join(self.folder, f"{index}.h5"), tree) for index, tree in enumerate(trees)]
+        merged = merge([read_result(path) for path in paths])
+        for kind in ("operator_properties", "kernel_checks", "known_errors", "published_figures", "seeded_faults", "stability_limits", "stability_maps",
+                     "extreme_rows", "conditioning_rows", "conditioning_checks"):
+            self.assertEqual(len(merged[kind]), len(trees[0][kind]), kind)
+        trees[1]["extreme_rows"][0]["verdict"] = "PASS"
+        self.assertEqual(len(merge([read_result(synthetic.write(path, tree)) for path, tree in zip(paths, trees)])["extreme_rows"]), 2)
 
 
 if __name__ == "__main__":
