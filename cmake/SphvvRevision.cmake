@@ -1,8 +1,10 @@
 # Run at every build: writes the source revision to OUT, and touches it only if it changed.
 execute_process(COMMAND git -C ${SOURCE} rev-parse HEAD OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE
                 RESULT_VARIABLE status ERROR_QUIET)
+# A copy within another repository, as of a seeded fault in the folder of the build, is not what that one's revision names.
+execute_process(COMMAND git -C ${SOURCE} rev-parse --show-prefix OUTPUT_VARIABLE prefix OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 set(clean true)
-if(NOT status EQUAL 0)
+if(NOT status EQUAL 0 OR NOT prefix STREQUAL "")
   set(revision "unknown")
   set(clean false)
 else()
