@@ -25,11 +25,11 @@ class Study:
         return self.name.replace("/", ".")
 
 
-def listed(sphvv, tier):
-    """The studies of a tier, in the order of the list. Throws ValueError, a sentence, for a program that is not sphvv."""
+def listed(sphvv, tier=None):
+    """The studies of a tier, or of all, in the order of the list. Throws ValueError, a sentence, for a program that is not sphvv."""
     done = subprocess.run([sphvv, "list", "studies", "--json", "-"], check=False, capture_output=True, text=True)
     try:
-        return [study for study in map(Study, json.loads(done.stdout)) if study.tier == tier]
+        return [study for study in map(Study, json.loads(done.stdout)) if tier in (None, study.tier)]
     except (ValueError, KeyError, TypeError):
         raise ValueError(f"{sphvv} does not list its studies, so it is no sphvv of this version") from None
 

@@ -213,6 +213,11 @@ ResultTree conservation_of(const ResultTree& tree) {
     return list;
 }
 
+/// The checks of a list; `conservation` is that of the runs of `tree`.
+const ResultTree& checks_of(const CheckList& list, const ResultTree& tree, const ResultTree& conservation) {
+    return std::string_view(list.name) == "conservation" ? conservation : entries_of(tree, list.name);
+}
+
 /// A name that no other entry has: a study that stands twice in a file is compared twice, not passed over.
 template <class Map>
 std::string free_key(const Map& map, std::string key) {
@@ -266,8 +271,7 @@ Contents contents_of(const ResultTree& tree, const ResultTree& conservation) {
     collect_studies(tree, "operator_studies", operator_identity, contents);
     collect_studies(tree, "studies", scheme_identity, contents);
     for (const CheckList& list : check_lists()) {
-        const bool of_runs = std::string_view(list.name) == "conservation";
-        for (const ResultTree& check : of_runs ? conservation : entries_of(tree, list.name)) {
+        for (const ResultTree& check : checks_of(list, tree, conservation)) {
             if (!is_check(list, check)) {
                 continue;
             }
@@ -598,7 +602,9 @@ ResultTree picked(const ResultTree& tree, const std::vector<const char*>& names)
 
 ResultTree reduced_study(const ResultTree& study, const std::vector<const char*>& identity) {
     ResultTree result = picked(study, identity);
-    result["expected"] = picked(member(study, "expected"), {"low", "high", "fate", "spacing", "not_before"});
+    std::vector<const char*> demands{"low", "high", "fate"};
+    demands.insert(demands.end(), fate_names.begin(), fate_names.end());
+    result["expected"] = picked(member(study, "expected"), demands);
     if (member(study, "axis") == "dt") {
         result["axis"] = "dt";
     }
@@ -652,7 +658,7 @@ void refuse_unless_holding(const ResultTree& check, const CheckList& list) {
     if ((member(check, list.passes) == true) == known) {
         const auto [subject, where] = identity_of(check, list.identity);
         throw UserError("no baseline is made of a result that does not pass: " + subject + " (" + where +
-                        ") is not as it must be");
+                        ") is not as it must be, see " + list.name);
     }
 }
 
@@ -824,8 +830,7 @@ ResultTree reduced_for_baseline(const ResultTree& result, bool allow_dirty) {
         kept.insert(kept.end(), demand_names.begin(), demand_names.end());
         kept.insert(kept.end(), list.values.begin(), list.values.end());
         kept.insert(kept.end(), {"waiver", "binding", list.passes});
-        const bool of_runs = std::string_view(list.name) == "conservation";
-        for (const ResultTree& check : of_runs ? conservation : entries_of(result, list.name)) {
+        for (const ResultTree& check : checks_of(list, result, conservation)) {
             if (!is_check(list, check)) {
                 continue;
             }

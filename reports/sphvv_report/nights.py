@@ -19,7 +19,7 @@ from .results import ResultError, is_number, plain
 from .tables import Column, Table
 
 MOVED = 0.01  # a change of error or work by more than this share is one
-ORDER_MOVED = 0.05  # a change of an order by more than this, and than both confidence intervals, is one, as in scripts/nightly
+ORDER_MOVED = 0.05  # a change of an order by more than this, and than both confidence intervals, is one
 MOST_NIGHTS = 60  # that a picture shows
 PANELS = [("l2", "error of the finest rung", True), ("order", "fitted order", False), ("work", "work (pairs + matrix entries)", True),
           ("seconds", "run time [s]", True)]
