@@ -8,6 +8,8 @@ add_library(sphvv_options INTERFACE)
 target_compile_features(sphvv_options INTERFACE cxx_std_20)
 target_compile_options(sphvv_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Woverloaded-virtual -Wno-psabi
+  -Wzero-as-null-pointer-constant -Wredundant-decls
+  $<$<CXX_COMPILER_ID:Clang>:-Wreserved-identifier>
   # GCC 12 takes the undefined register of its own AVX-512 intrinsics for a fault (GCC bug 105593), and inlined
   # std::string concatenation for overlapping copies (bug 105651).
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized -Wno-restrict>
@@ -23,6 +25,9 @@ if(SPHVV_SANITIZE)
   target_compile_options(sphvv_options INTERFACE -fsanitize=${SPHVV_SANITIZE} -fno-omit-frame-pointer
                          -fno-sanitize-recover=all)
   target_link_options(sphvv_options INTERFACE -fsanitize=${SPHVV_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND NOT SPHVV_SANITIZE_EIGEN)
+    target_compile_options(sphvv_options INTERFACE -fsanitize-ignorelist=${CMAKE_CURRENT_LIST_DIR}/sanitizers_leave_out.txt)
+  endif()
 endif()
 
 # sphvv_room(NAME SOURCES … LINK …): the library sphvv::NAME.

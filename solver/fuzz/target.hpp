@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 /// For -fsanitize=address: the HDF5 library (1.10.8) does not free all when it gives up on a damaged file.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
-extern "C" const char* __lsan_default_suppressions() { // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* lsan_default_suppressions() __asm__("__lsan_default_suppressions");
+extern "C" const char* lsan_default_suppressions() {
     return "leak:libhdf5";
 }
 
