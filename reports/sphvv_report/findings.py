@@ -1,7 +1,8 @@
 """What the verdicts amount to: groups of studies, the status of each study, the worst findings, the waivers."""
 
+import itertools
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from . import numbers
 
@@ -75,6 +76,11 @@ def expects_early_end(study):
     return study["expected"]["fate"] == "ends_early"
 
 
+def ended_as_expected(study):
+    """Not so if it ended sooner, or otherwise, than the study expects: that is a FAIL."""
+    return expects_early_end(study) and study["fit"]["verdict"] in ("PASS", "NONE")
+
+
 def is_short(study):
     return len(study["samples"]) < FEWEST_RUNGS
 
@@ -115,7 +121,7 @@ def fit_line(study):
     fit, expected = study["fit"], study["expected"]
     if fit["order"] is None:
         if early_ends(study):
-            known = ", as expected" if expects_early_end(study) else ""
+            known = ", as expected" if ended_as_expected(study) else ""
             return f"fit: none; {len(early_ends(study))} of {len(study['samples'])} rungs ended early{known}"
         if is_short(study):
             verbs = ("shows", "bears") if len(study["samples"]) == 1 else ("show", "bear")
@@ -132,7 +138,7 @@ def matrix_note(study):
     parts = [fitted_order(study["fit"])]
     lost = early_ends(study)
     if lost:
-        parts.append(f"{'†' if expects_early_end(study) else ''}n = {rung_list(lost)} ended early")
+        parts.append(f"{'†' if ended_as_expected(study) else ''}n = {rung_list(lost)} ended early")
     elif expects_early_end(study):
         parts.append("survived, against expectation")
     elif is_short(study) and study["fit"]["verdict"] == "NONE":
@@ -252,13 +258,12 @@ def is_reseeded(group, scheme):
 
 
 def early_end_finding(group, scheme):
-    studies = [study for study in group.of_scheme(scheme) if early_ends(study)]
+    """The early ends that no verdict tells of."""
+    studies = [study for study in group.of_scheme(scheme) if early_ends(study) and not verdict_finding("", study)]
     if not studies:
         return []
-    expected = all(expects_early_end(study) for study in studies)
-    waived = all(study["fit"]["waiver"] or expects_early_end(study) for study in studies)
-    severity, kind, title = ((4, "lost-expected", "ended early, as expected") if expected else (3, "waived", "ended early, waived") if waived
-                             else (1, "lost", "ended early"))
+    expected = all(map(expects_early_end, studies))
+    severity, kind, title = (4, "lost-expected", "ended early, as expected") if expected else (1, "lost", "ended early")
     return [Finding(severity, kind, f"{group.label}, {scheme}", title, early_end_reasons(group, scheme), studies[0]["anchor"])]
 
 
@@ -275,26 +280,28 @@ def goal_findings(group):
             for claim in group.claims if claim.get("binding") and not claim["agrees"]]
 
 
-def verdict_finding(place, study):
+def verdict_finding(place, study, reasons=None):
+    """The finding that a verdict is, if it is one; `reasons` for it are those of the fit if there are no better ones."""
     fit = study["fit"]
     kind = status(study)
-    reason = fit["reason"] or "no reason given"
+    reasons = reasons or [fit["reason"] or "no reason given"]
     if kind in ("fail", "inconclusive"):
-        return [Finding(0 if kind == "fail" else 2, kind, place, fit_line(study), [reason], study["anchor"])]
-    if kind != "waived" and expects_early_end(study) and not early_ends(study):
-        return [Finding(2, kind, place, "survived, though the study expects it to end early", [reason], study["anchor"])]
+        return [Finding(0 if kind == "fail" else 2, kind, place, fit_line(study), reasons, study["anchor"])]
+    if kind == "waived":
+        return [Finding(3, kind, place, f"{fit['verdict']}, waived", [*reasons, "Waiver: " + fit["waiver"]], study["anchor"])]
+    if expects_early_end(study) and not early_ends(study):
+        return [Finding(2, kind, place, "survived, though the study expects it to end early", reasons, study["anchor"])]
     return []
 
 
-def waived_findings(group):
-    """Verdicts that are waived; the fields of a scheme that are for one reason as one."""
+def verdict_findings(group):
+    """The verdicts that are findings; the fields of a scheme of which the same is to be said as one."""
     together = {}
     for study in group.studies:
-        if status(study) == "waived":
-            fit = study["fit"]
-            together.setdefault((study["scheme"], fit["verdict"], fit["reason"] or "no reason given", fit["waiver"]), []).append(study)
-    return [Finding(3, "waived", f"{group.label}, {scheme}, {', '.join(study['field'] for study in studies)}", f"{verdict}, waived",
-                    [reason, "Waiver: " + waiver], studies[0]["anchor"]) for (scheme, verdict, reason, waiver), studies in together.items()]
+        unexpected = early_ends(study) and not expects_early_end(study)
+        for found in verdict_finding("", study, early_end_reasons(group, study["scheme"]) if unexpected else None):
+            together.setdefault((study["scheme"], found.title, *found.reasons), (found, []))[1].append(study["field"])
+    return [replace(found, where=f"{group.label}, {scheme}, {', '.join(fields)}") for (scheme, *_), (found, fields) in together.items()]
 
 
 def findings(groups):
@@ -303,9 +310,7 @@ def findings(groups):
     for group in groups:
         for scheme in group.schemes:
             found += early_end_finding(group, scheme)
-        found += conservation_findings(group) + goal_findings(group) + waived_findings(group)
-        for study in group.studies:
-            found += verdict_finding(f"{group.label}, {study['scheme']}, {study['field']}", study)
+        found += conservation_findings(group) + goal_findings(group) + verdict_findings(group)
     return found
 
 
@@ -332,7 +337,7 @@ def verdict_counts(studies):
     return text + (f", {tally['none']} without {article} {noun}" if tally["none"] else "")
 
 
-def summary(groups, found):
+def summary(groups):
     """What became of the schemes, in one sentence; nothing without schemes."""
     if not groups:
         return ""
@@ -340,12 +345,13 @@ def summary(groups, found):
     cases, schemes = unique(group.case for group in groups), unique(study["scheme"] for study in studies)
     text = f"{plural(len(schemes), 'scheme')} on {plural(len(cases), 'case')} in {plural(len(groups), 'setting')}: "
     text += verdict_counts(studies)
-    ends = [finding for finding in found if finding.title.startswith("ended early")]
+    ladders = [[study for study in group.of_scheme(scheme) if early_ends(study)] for group in groups for scheme in group.schemes]
+    ends = list(filter(None, ladders))
     if ends:
-        expected = sum(finding.status != "lost" for finding in ends)
-        how = "as expected or waived" if any(finding.status == "waived" for finding in ends) else "as expected"
-        known = how if expected == len(ends) else f"{expected} of them {how}" if expected else "unexpectedly"
-        text += f"; {plural(len(ends), 'ladder')} ended early, {known}"
+        is_waived = lambda study: status(study) == "waived"
+        known = sum(all(ended_as_expected(study) or is_waived(study) for study in ladder) for ladder in ends)
+        how = "as expected or waived" if any(map(is_waived, itertools.chain(*ends))) else "as expected"
+        text += f"; {plural(len(ends), 'ladder')} ended early, " + (how if known == len(ends) else f"{known} of them {how}" if known else "unexpectedly")
     return text + "."
 
 

@@ -436,7 +436,7 @@ class Builder:
         chapters = {"publications": publications.view(self), "nights": nights.view(self), "checks": checks.view(self)}
         needless = {word for word, is_needed in (("CHANGED, UNCHANGED", front["changes"]), ("agrees, DISAGREES", chapters["publications"]),
                                                  ("caught", chapters["checks"]["faults"]), ("margin", front["misses"])) if not is_needed}
-        return {"title": "Verification of " + listed(self.subjects()), "summary": findings.summary(self.groups, found),
+        return {"title": "Verification of " + listed(self.subjects()), "summary": findings.summary(self.groups),
                 "checks_summary": "; ".join(filter(None, clauses)),
                 "stamp": stamp_of(self.results["files"]), "files": self.results["files"], **front,
                 "cases": self.contents(), "is_large": overview.is_large(self.groups),

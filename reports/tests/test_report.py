@@ -1197,19 +1197,40 @@ class Pieces(unittest.TestCase):
         fit = {"verdict": "FAIL", "waiver": "sound grows", "reason": "0.3 < 1", "order": 0.3}
         studies = [{"scheme": "wcsph", "field": name, "anchor": name, "expected": {"low": 1.0, "high": None, "fate": None}, "fit": dict(fit, reason=reason),
                     "samples": [{"n": 40, "survived": True}] * 4} for name, reason in (("velocity", "0.3 < 1"), ("pressure", "0.3 < 1"), ("density", "0.4 < 1"))]
-        found = findings.waived_findings(findings.Group("g", "c", studies=studies))
+        found = findings.verdict_findings(findings.Group("g", "c", studies=studies))
         self.assertEqual([finding.where for finding in found], ["g, wcsph, velocity, pressure", "g, wcsph, density"])
         self.assertEqual(found[0].reasons, ["0.3 < 1", "Waiver: sound grows"])
 
-    def test_an_early_end_that_is_waived_is_known(self):
-        study = {"scheme": "wcsph", "field": "velocity", "anchor": "s", "expected": {"low": None, "high": None, "fate": None},
-                 "fit": {"verdict": "FAIL", "waiver": "", "reason": "", "order": None}, "samples": [{"n": 40, "survived": False, "diagnosis": "pairs"}]}
-        group = findings.Group("g", "c", studies=[study])
-        self.assertEqual([(finding.severity, finding.status) for finding in findings.early_end_finding(group, "wcsph")], [(1, "lost")])
-        study["fit"]["waiver"] = "pairs pass below 0.25 dx"
-        self.assertEqual([(finding.severity, finding.status) for finding in findings.early_end_finding(group, "wcsph")], [(3, "waived")])
-        summary = findings.summary([group], findings.early_end_finding(group, "wcsph"))
-        self.assertIn("1 verdict (1 WAIVED); 1 ladder ended early, as expected or waived", summary)  # no order verdict: nothing was fitted
+    @staticmethod
+    def group_that_ended(verdict, waiver="", fate=None, fields=("velocity", "pressure")):
+        """Two rungs of a scheme, the second of which ended early."""
+        samples = [{"n": 20, "survived": True}, {"n": 40, "survived": False, "diagnosis": "a pair is too near"}]
+        return findings.Group("g", "c", studies=[
+            {"scheme": "wcsph", "field": field, "anchor": field, "expected": {"low": None, "high": None, "fate": fate}, "samples": samples,
+             "fit": {"verdict": verdict, "waiver": waiver, "reason": "why", "order": None}} for field in fields])
+
+    def test_an_early_end_is_one_finding(self):
+        """Of however many fields, and whether or not there is a verdict on it."""
+        ended = "n = 40: a pair is too near"
+        for arguments, severity, kind, where, reasons, summary in (
+                (("FAIL",), 0, "fail", "g, wcsph, velocity, pressure", [ended], "(2 FAIL); 1 ladder ended early, unexpectedly"),
+                (("FAIL", "it is stiff"), 3, "waived", "g, wcsph, velocity, pressure", [ended, "Waiver: it is stiff"],
+                 "(2 WAIVED); 1 ladder ended early, as expected or waived"),
+                (("FAIL", "", "ends_early"), 0, "fail", "g, wcsph, velocity, pressure", ["why"], "(2 FAIL); 1 ladder ended early, unexpectedly"),
+                (("NONE",), 1, "lost", "g, wcsph", [ended], "1 ladder ended early, unexpectedly"),
+                (("PASS", "", "ends_early"), 4, "lost-expected", "g, wcsph", [ended], "(2 PASS); 1 ladder ended early, as expected")):
+            with self.subTest(arguments=arguments):
+                group = self.group_that_ended(*arguments)
+                found = findings.findings([group])
+                self.assertEqual([(f.severity, f.status, f.where, f.reasons) for f in found], [(severity, kind, where, reasons)])
+                self.assertEqual("as expected" in found[0].title, kind == "lost-expected")
+                self.assertIn(summary, findings.summary([group]))
+
+    def test_an_early_end_is_waived_for_each_field(self):
+        group = self.group_that_ended("FAIL", "it is stiff")
+        group.studies[1]["fit"]["waiver"] = ""
+        self.assertEqual([finding.status for finding in findings.findings([group])], ["waived", "fail"])
+        self.assertIn("1 ladder ended early, unexpectedly", findings.summary([group]))
 
     def test_a_waived_survival_is_listed_once(self):
         study = {"scheme": "wcsph", "field": "velocity", "anchor": "s", "expected": {"low": None, "high": None, "fate": "ends_early"},
