@@ -13,6 +13,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <random>
 #include <stdexcept>
@@ -467,9 +468,15 @@ private:
         results_.checks.push_back(std::move(check));
     }
 
-    /// Measures a problem, with every seed if it is disordered, and adds what holds of any such matrix.
+    /// Measures a problem, with every seed if it is disordered, and adds what holds of any such matrix; once,
+    /// though several ladders may meet in it.
     Group measure(PressureProblem problem) {
-        Group group;
+        const auto [known, is_new] = measured_.try_emplace(name_of(problem));
+        Group& group = known->second;
+        if (!is_new) {
+            matrices_ -= group.size();
+            return group;
+        }
         for (const int seed : seeds) {
             problem.seed = seed;
             if (progress_) {
@@ -704,7 +711,8 @@ private:
     const ConditioningStudy& study_;
     const StabilityProgress& progress_;
     ConditioningResults results_;
-    std::size_t matrices_ = 1; // for progress
+    std::map<std::string, Group> measured_; // by the name of the problem
+    std::size_t matrices_ = 1;              // for progress
 };
 
 std::string number(double value, const char* format = "%.4g") {

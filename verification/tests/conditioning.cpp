@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <tuple>
 
 namespace sphvv::verification {
 namespace {
@@ -72,6 +73,17 @@ TEST(ConditioningStudies, GoOnAfterAMatrixThatFails) {
     };
     EXPECT_TRUE(std::ranges::any_of(results.rows, is_column));
     EXPECT_EQ(exit_status(std::vector{results}), 1);
+    // The lattice and its 10 % of jitter are of two ladders each, but one matrix. Periodic: the lattice and
+    // six jitters of five seeds; Schwaiger's likewise; five with a pair at one place; a column; three between
+    // walls.
+    using Matrix = std::tuple<PressureBoundary, int, int, double, std::uint64_t, bool, bool, double>;
+    std::set<Matrix> matrices;
+    for (const Conditioning& row : results.rows) {
+        const PressureProblem& p = row.problem;
+        matrices.emplace(p.boundary, p.columns, p.rows, p.jitter, p.seed, p.schwaiger, p.coincident, p.mean);
+    }
+    EXPECT_EQ(results.rows.size(), (1U + 6 * 5) * 2 + 5 + 1 + 3);
+    EXPECT_EQ(matrices.size(), results.rows.size());
 }
 
 // The nearest neighbours alone would give 2 (1 - cos k dx)/dx^2; the kernel's lattice sum is held against
