@@ -136,7 +136,7 @@ class Operators(unittest.TestCase):
         for number in (signal.SIGINT, signal.SIGTERM):
             process = subprocess.Popen([SPHVV, "operators", "--out", str(self.folder / "out.h5")], stdout=subprocess.PIPE,
                                        stderr=subprocess.PIPE, text=True)
-            self.assertTrue(process.stderr.readline(), "it ended before the first operator was done")
+            self.assertTrue(process.stderr.readline(), "it ended before the first ladder was done")
             process.send_signal(number)
             output, error = process.communicate(timeout=120)
             self.assertEqual(process.returncode, 128 + number, error)

@@ -77,7 +77,7 @@ def expects_early_end(study):
 
 
 def ended_as_expected(study):
-    """Not so if it ended sooner, or otherwise, than the study expects: that is a FAIL."""
+    """Not so if it ended sooner, or otherwise, than the study expects, or if another rung survived: that is a FAIL."""
     return expects_early_end(study) and study["fit"]["verdict"] in ("PASS", "NONE")
 
 
@@ -139,9 +139,10 @@ def matrix_note(study):
     lost = early_ends(study)
     if lost:
         parts.append(f"{'†' if ended_as_expected(study) else ''}n = {rung_list(lost)} ended early")
-    elif expects_early_end(study):
-        parts.append("survived, against expectation")
-    elif is_short(study) and study["fit"]["verdict"] == "NONE":
+    held = [sample for sample in study["samples"] if sample["survived"]]
+    if held and expects_early_end(study) and not (lost and ended_as_expected(study)):
+        parts.append(f"{f'n = {rung_list(held)} ' if lost else ''}survived, against expectation")
+    elif not lost and is_short(study) and study["fit"]["verdict"] == "NONE":
         parts.append(plural(len(study["samples"]), "rung"))
     return "; ".join(filter(None, parts))
 
@@ -258,7 +259,7 @@ def is_reseeded(group, scheme):
 
 
 def early_end_finding(group, scheme):
-    """The early ends that no verdict tells of."""
+    """The early ends that are no finding as a verdict."""
     studies = [study for study in group.of_scheme(scheme) if early_ends(study) and not verdict_finding("", study)]
     if not studies:
         return []
@@ -298,9 +299,10 @@ def verdict_findings(group):
     """The verdicts that are findings; the fields of a scheme of which the same is to be said as one."""
     together = {}
     for study in group.studies:
-        unexpected = early_ends(study) and not expects_early_end(study)
-        for found in verdict_finding("", study, early_end_reasons(group, study["scheme"]) if unexpected else None):
-            together.setdefault((study["scheme"], found.title, *found.reasons), (found, []))[1].append(study["field"])
+        is_judged_by_its_end = early_ends(study) and not expects_early_end(study) and study["fit"]["order"] is None
+        for found in verdict_finding("", study, early_end_reasons(group, study["scheme"]) if is_judged_by_its_end else None):
+            alike = study["scheme"], study.get("tier"), found.status, found.title, *found.reasons
+            together.setdefault(alike, (found, []))[1].append(study["field"])
     return [replace(found, where=f"{group.label}, {scheme}, {', '.join(fields)}") for (scheme, *_), (found, fields) in together.items()]
 
 
@@ -351,7 +353,7 @@ def summary(groups):
         is_waived = lambda study: status(study) == "waived"
         known = sum(all(ended_as_expected(study) or is_waived(study) for study in ladder) for ladder in ends)
         how = "as expected or waived" if any(map(is_waived, itertools.chain(*ends))) else "as expected"
-        text += f"; {plural(len(ends), 'ladder')} ended early, " + (how if known == len(ends) else f"{known} of them {how}" if known else "unexpectedly")
+        text += f"; {plural(len(ends), 'ladder')} ended early, " + (how if known == len(ends) else f"{known} of them {how}" if known else "not as expected")
     return text + "."
 
 

@@ -1213,11 +1213,11 @@ class Pieces(unittest.TestCase):
         """Of however many fields, and whether or not there is a verdict on it."""
         ended = "n = 40: a pair is too near"
         for arguments, severity, kind, where, reasons, summary in (
-                (("FAIL",), 0, "fail", "g, wcsph, velocity, pressure", [ended], "(2 FAIL); 1 ladder ended early, unexpectedly"),
+                (("FAIL",), 0, "fail", "g, wcsph, velocity, pressure", [ended], "(2 FAIL); 1 ladder ended early, not as expected"),
                 (("FAIL", "it is stiff"), 3, "waived", "g, wcsph, velocity, pressure", [ended, "Waiver: it is stiff"],
                  "(2 WAIVED); 1 ladder ended early, as expected or waived"),
-                (("FAIL", "", "ends_early"), 0, "fail", "g, wcsph, velocity, pressure", ["why"], "(2 FAIL); 1 ladder ended early, unexpectedly"),
-                (("NONE",), 1, "lost", "g, wcsph", [ended], "1 ladder ended early, unexpectedly"),
+                (("FAIL", "", "ends_early"), 0, "fail", "g, wcsph, velocity, pressure", ["why"], "(2 FAIL); 1 ladder ended early, not as expected"),
+                (("NONE",), 1, "lost", "g, wcsph", [ended], "1 ladder ended early, not as expected"),
                 (("PASS", "", "ends_early"), 4, "lost-expected", "g, wcsph", [ended], "(2 PASS); 1 ladder ended early, as expected")):
             with self.subTest(arguments=arguments):
                 group = self.group_that_ended(*arguments)
@@ -1230,7 +1230,28 @@ class Pieces(unittest.TestCase):
         group = self.group_that_ended("FAIL", "it is stiff")
         group.studies[1]["fit"]["waiver"] = ""
         self.assertEqual([finding.status for finding in findings.findings([group])], ["waived", "fail"])
-        self.assertIn("1 ladder ended early, unexpectedly", findings.summary([group]))
+        self.assertIn("1 ladder ended early, not as expected", findings.summary([group]))
+
+    def test_a_rung_that_survives_is_named_beside_those_that_ended(self):
+        group = self.group_that_ended("FAIL", "", "ends_early", ("velocity",))
+        self.assertEqual(findings.matrix_note(group.studies[0]), "n = 40 ended early; n = 20 survived, against expectation")
+        self.assertIn("1 ladder ended early, not as expected", findings.summary([group]))
+        group.studies[0]["samples"] = group.studies[0]["samples"][:1]
+        self.assertEqual(findings.matrix_note(group.studies[0]), "survived, against expectation")
+
+    def test_fields_with_other_verdicts_or_tiers_are_findings_of_their_own(self):
+        group = self.group_that_ended("FAIL")
+        group.studies[1]["fit"]["verdict"] = "INCONCLUSIVE"
+        self.assertEqual([(f.severity, f.status) for f in findings.findings([group])], [(0, "fail"), (2, "inconclusive")])
+        group = self.group_that_ended("FAIL", fields=("velocity", "velocity"))
+        for study, tier in zip(group.studies, ("quick", "nightly")):
+            study["tier"] = tier
+        self.assertEqual(len(findings.findings([group])), 2)
+
+    def test_an_order_keeps_its_reason_beside_an_early_end(self):
+        group = self.group_that_ended("FAIL", fields=("velocity",))
+        group.studies[0]["fit"].update(order=0.3, ci95=None, norm="l2")
+        self.assertEqual(findings.findings([group])[0].reasons, ["why"])
 
     def test_a_waived_survival_is_listed_once(self):
         study = {"scheme": "wcsph", "field": "velocity", "anchor": "s", "expected": {"low": None, "high": None, "fate": "ends_early"},
