@@ -1,6 +1,5 @@
 """What the verdicts amount to: groups of studies, the status of each study, the worst findings, the waivers."""
 
-import itertools
 import re
 from dataclasses import dataclass, field, replace
 
@@ -137,10 +136,11 @@ def matrix_note(study):
     """The small line below the word in the verdict matrix."""
     parts = [fitted_order(study["fit"])]
     lost = early_ends(study)
-    if lost:
-        parts.append(f"{'†' if ended_as_expected(study) else ''}n = {rung_list(lost)} ended early")
     held = [sample for sample in study["samples"] if sample["survived"]]
-    if held and expects_early_end(study) and not (lost and ended_as_expected(study)):
+    as_expected = lost and ended_as_expected(study)
+    if lost:
+        parts.append(f"{'†' if as_expected else ''}n = {rung_list(lost)} ended early")
+    if held and expects_early_end(study) and not as_expected:
         parts.append(f"{f'n = {rung_list(held)} ' if lost else ''}survived, against expectation")
     elif not lost and is_short(study) and study["fit"]["verdict"] == "NONE":
         parts.append(plural(len(study["samples"]), "rung"))
@@ -347,12 +347,12 @@ def summary(groups):
     cases, schemes = unique(group.case for group in groups), unique(study["scheme"] for study in studies)
     text = f"{plural(len(schemes), 'scheme')} on {plural(len(cases), 'case')} in {plural(len(groups), 'setting')}: "
     text += verdict_counts(studies)
-    ladders = [[study for study in group.of_scheme(scheme) if early_ends(study)] for group in groups for scheme in group.schemes]
-    ends = list(filter(None, ladders))
+    ladders = ([study for study in group.of_scheme(scheme) if early_ends(study)] for group in groups for scheme in group.schemes)
+    ends = [ladder for ladder in ladders if ladder]
     if ends:
         is_waived = lambda study: status(study) == "waived"
         known = sum(all(ended_as_expected(study) or is_waived(study) for study in ladder) for ladder in ends)
-        how = "as expected or waived" if any(map(is_waived, itertools.chain(*ends))) else "as expected"
+        how = "as expected or waived" if any(is_waived(study) for ladder in ends for study in ladder) else "as expected"
         text += f"; {plural(len(ends), 'ladder')} ended early, " + (how if known == len(ends) else f"{known} of them {how}" if known else "not as expected")
     return text + "."
 
